@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "lammps_headers.h"
+
+#include "fix_spot.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "modify.h"
+#include "region.h"
+#include "update.h"
+#include "utils.h"
+
+#include "region_container.h"
+#include "spot/drainage.hpp"
+#include "spot/errors.hpp"
+#include "spot_command.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <unordered_map>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+using spot::message;
+
+namespace {
+
+/// Columns of the spots in dump local.
+enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
+
+enum BoundaryKind { PERIODIC = 0, FIXED = 1 };    // as in domain.h
+
+}    // namespace
+
+struct FixSpot::Model {
+  SpotCommand command;
+  double diameter = 0.0;
+  double grain_mass = 0.0;
+  std::shared_ptr<const spot::Container> container;
+  std::unique_ptr<spot::Drainage> drainage;
+  bigint windows = 0;        // done since the fix was made; the clock of the spots
+  int windows_per_step = 1;
+  std::unordered_map<tagint, int> local;    // index of a grain in LAMMPS' arrays
+  std::vector<tagint> leaving;              // drained grains that LAMMPS still holds, in increasing order
+  std::deque<bigint> drained_after_step = {0};    // totals over the last command.average steps
+  std::vector<double> spots;                // SpotColumn values, a row a spot
+  std::vector<double *> rows;
+};
+
+/* ---------------------------------------------------------------------- */
+
+FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg) : Fix(instance, narg, arg), model(std::make_unique<Model>())
+{
+  time_integrate = 1;
+  force_reneighbor = 1;
+  next_reneighbor = -1;
+  nevery = 1;
+  dynamic_group_allow = 0;
+
+  vector_flag = 1;
+  size_vector = 7;
+  global_freq = 1;
+  extvector = 0;
+
+  local_flag = 1;
+  size_local_cols = COLUMNS;
+  size_local_rows = 0;
+  local_freq = 1;
+
+  if (!atom->radius_flag)
+    error->all(FLERR, std::string("fix spot needs grains with a radius: use atom_style sphere"));
+  if (lmp->kokkos) error->all(FLERR, std::string("fix spot does not work with the KOKKOS package"));
+  if (domain->triclinic) error->all(FLERR, std::string("fix spot does not work in a triclinic box"));
+  if (domain->dimension != 3) error->all(FLERR, std::string("fix spot needs a simulation in 3 dimensions"));
+  try {
+    model->command = parse_spot_command(std::vector<std::string>(arg + 3, arg + narg));
+  } catch (const spot::Error &e) {
+    error->all(FLERR, message("Illegal fix spot command: ", e.what()));
+  }
+}
+
+FixSpot::~FixSpot() = default;
+
+int FixSpot::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | END_OF_STEP; }
+
+/* ----------------------------------------------------------------------
+   checks before every run
+------------------------------------------------------------------------- */
+
+void FixSpot::check_run()
+{
+  if (update->whichflag == 2) error->all(FLERR, std::string("fix spot does not work with minimize"));
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, std::string("fix spot does not work with run_style respa"));
+  if (comm->nprocs > 1)
+    error->all(FLERR, message("fix spot relaxes in the order of time and runs on 1 MPI rank, not on ", comm->nprocs));
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side)
+      if (domain->boundary[axis][side] != FIXED)
+        error->all(FLERR, message("fix spot needs 'boundary f f f': the ", side ? "upper" : "lower", " boundary in ",
+                                  "xyz"[axis], " is ", domain->boundary[axis][side] == PERIODIC ? "periodic" : "shrink-wrapped"));
+
+  model->command.window = model->command.window.value_or(update->dt);
+  const double ratio = update->dt / *model->command.window;
+  if (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
+    error->all(FLERR, message("fix spot: timestep ", update->dt, " must be a whole number of windows of ",
+                              *model->command.window));
+  model->windows_per_step = static_cast<int>(std::lround(ratio));
+}
+
+void FixSpot::check_other_fixes()
+{
+  int spots = 0;
+  for (int i = 0; i < modify->nfix; ++i)
+    if (strcmp(modify->fix[i]->style, style) == 0) ++spots;
+  if (spots > 1) error->all(FLERR, std::string("only one fix spot can be in use"));
+}
+
+void FixSpot::check_grains()
+{
+  if (atom->natoms == 0 || atom->nlocal == 0) {
+    // A silo that ran empty is no error, but without a single grain there is no diameter to start from.
+    if (!model->drainage) error->all(FLERR, std::string("fix spot: there are no grains"));
+    return;
+  }
+  const double diameter = model->diameter > 0.0 ? model->diameter : 2.0 * atom->radius[0];
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (!(std::abs(2.0 * atom->radius[i] - diameter) <= 1e-6 * diameter))
+      error->one(FLERR, message("fix spot needs grains of one diameter, ", diameter, ": grain ", atom->tag[i], " has ",
+                                2.0 * atom->radius[i]));
+  if (!(diameter > 0.0)) error->all(FLERR, std::string("fix spot: the grains have no diameter; use 'set ... diameter'"));
+  model->diameter = diameter;
+  model->grain_mass = atom->rmass[0];
+}
+
+void FixSpot::init()
+{
+  check_run();
+  check_other_fixes();
+  check_grains();
+  // Without a pair style nobody else asks for a communication cutoff, and LAMMPS would warn that it is zero.
+  comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
+  try {
+    model->command.resolve(model->diameter);
+    make_container();
+  } catch (const spot::Error &e) {
+    error->all(FLERR, message("fix spot: ", e.what()));
+  }
+}
+
+/// For every run anew: a region can have been deleted or defined again since the last one.
+void FixSpot::make_container()
+{
+  const SpotCommand &command = model->command;
+  const spot::SpotBuffers buffers{*command.side_buffer, *command.base_buffer};
+  if (const auto *box = std::get_if<BoxWalls>(&command.walls)) {
+    model->container = spot::box_silo(box->x_low, box->x_high, box->y_low, box->y_high, *command.orifice, buffers);
+  } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
+    model->container = spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, *command.orifice, buffers);
+  } else {
+    const std::string &name = std::get<RegionWalls>(command.walls).id;
+    const int index = domain->find_region(name);
+    if (index < 0) throw spot::InvalidContainer(message("region '", name, "' does not exist"));
+    Region *region = domain->regions[index];
+    if (region->varshape || region->dynamic_check())
+      throw spot::InvalidContainer(message("region '", name, "' moves or changes shape, which is not supported"));
+    model->container = std::make_shared<RegionContainer>(region, *command.orifice, buffers);
+  }
+}
+
+/* ----------------------------------------------------------------------
+   grains between LAMMPS' arrays and the packing
+------------------------------------------------------------------------- */
+
+std::vector<spot::Grain> FixSpot::grains_of_lammps() const
+{
+  std::vector<spot::Grain> grains;
+  grains.reserve(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; ++i)
+    grains.push_back({atom->tag[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]}, (atom->mask[i] & groupbit) == 0});
+  std::sort(grains.begin(), grains.end(), [](const spot::Grain &a, const spot::Grain &b) { return a.id < b.id; });
+  return grains;
+}
+
+void FixSpot::setup(int)
+{
+  const SpotCommand &command = model->command;
+  try {
+    const std::vector<spot::Grain> grains = grains_of_lammps();
+    double extent = std::abs(*command.outlet) + model->diameter;
+    for (int axis = 0; axis < 3; ++axis)
+      extent = std::max({extent, std::abs(domain->boxlo[axis]), std::abs(domain->boxhi[axis])});
+    spot::Packing packing(model->diameter, extent, grains);
+    if (!model->drainage)
+      model->drainage = std::make_unique<spot::Drainage>(command.spots, command.relaxation,
+                                                         spot::DrainageLimits{*command.outlet, command.largest_overlap},
+                                                         model->container, std::move(packing));
+    else if (packing.grains() != model->drainage->packing().grains() || command.uses_region())
+      model->drainage->replace(model->container, std::move(packing));
+  } catch (const spot::Error &e) {
+    error->all(FLERR, message("fix spot: ", e.what()));
+  }
+  write_grains();
+  list_spots();
+}
+
+/// Positions go back to LAMMPS; the velocity is the displacement over the step divided by the timestep.
+void FixSpot::write_grains()
+{
+  auto &local = model->local;
+  local.clear();
+  for (int i = 0; i < atom->nlocal; ++i) local[atom->tag[i]] = i;
+  const spot::Packing &packing = model->drainage->packing();
+  const double per_time = 1.0 / update->dt;
+  for (std::size_t slot = 0; slot < packing.slots(); ++slot) {
+    if (!packing.present(slot)) continue;
+    const int i = local.at(static_cast<tagint>(packing.id(slot)));
+    const double moved[3] = {packing.x()[slot], packing.y()[slot], packing.z()[slot]};
+    for (int axis = 0; axis < 3; ++axis) {
+      atom->v[i][axis] = (moved[axis] - atom->x[i][axis]) * per_time;
+      atom->x[i][axis] = moved[axis];
+    }
+  }
+}
+
+/* ----------------------------------------------------------------------
+   one step: a whole number of windows
+------------------------------------------------------------------------- */
+
+void FixSpot::initial_integrate(int)
+{
+  spot::Drainage &drainage = *model->drainage;
+  try {
+    // The clock is a multiple of the window: how many of them make a step changes nothing.
+    model->windows += model->windows_per_step;
+    drainage.advance_to(static_cast<double>(model->windows) * *model->command.window);
+    drainage.require_inside();
+  } catch (const spot::Error &e) {
+    error->one(FLERR, message("fix spot: ", e.what()));
+  }
+  for (const spot::Grain &grain : drainage.take_drained()) model->leaving.push_back(static_cast<tagint>(grain.id));
+  write_grains();
+  if (!model->leaving.empty()) next_reneighbor = update->ntimestep;
+
+  model->drained_after_step.push_back(drainage.counters().drained);
+  if (model->drained_after_step.size() > static_cast<std::size_t>(model->command.average) + 1)
+    model->drained_after_step.pop_front();
+}
+
+/// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this.
+void FixSpot::pre_exchange()
+{
+  if (model->leaving.empty()) return;
+  for (const tagint grain : model->leaving) {
+    const int i = model->local.at(grain);
+    atom->x[i][2] = domain->boxlo[2] - model->diameter;
+  }
+  atom->natoms -= static_cast<bigint>(model->leaving.size());
+  model->leaving.clear();
+}
+
+void FixSpot::end_of_step() { list_spots(); }
+
+void FixSpot::list_spots()
+{
+  const std::vector<spot::Spot> &spots = model->drainage->spots();
+  model->spots.resize(spots.size() * COLUMNS);
+  model->rows.resize(spots.size());
+  for (std::size_t k = 0; k < spots.size(); ++k) {
+    double *row = model->spots.data() + k * COLUMNS;
+    row[ID] = static_cast<double>(spots[k].id);
+    row[X] = spots[k].position.x();
+    row[Y] = spots[k].position.y();
+    row[Z] = spots[k].position.z();
+    row[STEPS] = static_cast<double>(spots[k].steps);
+    model->rows[k] = row;
+  }
+  std::sort(model->rows.begin(), model->rows.end(), [](const double *a, const double *b) { return a[ID] < b[ID]; });
+  size_local_rows = static_cast<int>(spots.size());
+  array_local = model->rows.data();
+}
+
+/* ----------------------------------------------------------------------
+   output
+------------------------------------------------------------------------- */
+
+double FixSpot::compute_vector(int which)
+{
+  if (!model->drainage) return 0.0;
+  const spot::Counters &counters = model->drainage->counters();
+  switch (which) {
+    case 0: return static_cast<double>(model->drainage->spots().size());
+    case 1: return static_cast<double>(counters.moves);
+    case 2: return static_cast<double>(counters.drained);
+    case 3: return static_cast<double>(counters.drained) * model->grain_mass;
+    case 4: return mean_outflow();
+    case 5: return model->drainage->largest_overlap().depth;
+    default: return static_cast<double>(counters.sweeps);
+  }
+}
+
+/// Grains a time, over the last `average` steps (fewer when no more were done).
+double FixSpot::mean_outflow() const
+{
+  const auto &totals = model->drained_after_step;
+  if (totals.size() < 2) return 0.0;
+  return static_cast<double>(totals.back() - totals.front()) / (static_cast<double>(totals.size() - 1) * update->dt);
+}
+
+double FixSpot::memory_usage()
+{
+  if (!model->drainage) return 0.0;
+  return static_cast<double>(model->drainage->packing().memory()) +
+      static_cast<double>(model->spots.capacity() * sizeof(double));
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#ifdef FIX_CLASS
+// clang-format off
+FixStyle(spot,FixSpot);
+// clang-format on
+#else
+
+#ifndef LMP_FIX_SPOT_H
+#define LMP_FIX_SPOT_H
+
+#include "fix.h"
+
+#include <memory>
+#include <vector>
+
+namespace spot {
+struct Grain;
+}
+
+namespace LAMMPS_NS {
+
+/// Drainage of dense grains by diffusing spots of free volume; see doc/fix_spot.rst.
+class FixSpot : public Fix {
+ public:
+  FixSpot(class LAMMPS *, int, char **);
+  ~FixSpot() override;
+
+  int setmask() override;
+  void init() override;
+  void setup(int) override;
+  void initial_integrate(int) override;
+  void pre_exchange() override;
+  void end_of_step() override;
+  double compute_vector(int) override;
+  double memory_usage() override;
+
+ private:
+  struct Model;    // what comes from spot-core stays out of this header
+  std::unique_ptr<Model> model;
+
+  void check_run();
+  void check_grains();
+  void check_other_fixes();
+  void make_container();
+  std::vector<spot::Grain> grains_of_lammps() const;
+  void write_grains();
+  void list_spots();
+  double mean_outflow() const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
+#endif

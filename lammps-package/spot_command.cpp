@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "spot_command.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "spot/errors.hpp"
+
+using spot::InvalidParameter;
+using spot::message;
+
+namespace {
+
+/// The words of one command, taken one after the other.
+class Words {
+ public:
+  explicit Words(const std::vector<std::string>& words) : words_(words) {}
+
+  bool empty() const { return next_ == words_.size(); }
+
+  std::string keyword() {
+    keyword_ = words_[next_++];
+    return keyword_;
+  }
+
+  std::string value(const char* what) {
+    if (empty()) throw InvalidParameter(message("keyword '", keyword_, "' ends before its value ", what));
+    return words_[next_++];
+  }
+
+  double number(const char* what) {
+    const std::string word = value(what);
+    double result = 0.0;
+    const char* first = word.c_str() + (word.size() > 1 && word[0] == '+' ? 1 : 0);
+    const auto [end, error] = std::from_chars(first, word.c_str() + word.size(), result);
+    if (error != std::errc() || end != word.c_str() + word.size() || !std::isfinite(result))
+      throw InvalidParameter(message("'", word, "' is not a finite number, but keyword '", keyword_,
+                                     "' needs one for ", what));
+    return result;
+  }
+
+  double positive(const char* what) {
+    const double result = number(what);
+    if (result <= 0.0) throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be positive"));
+    return result;
+  }
+
+  long long integer(const char* what, long long least) {
+    const std::string word = value(what);
+    long long result = 0;
+    const auto [end, error] = std::from_chars(word.c_str(), word.c_str() + word.size(), result);
+    if (error != std::errc() || end != word.c_str() + word.size() || result < least)
+      throw InvalidParameter(message("'", word, "' after keyword '", keyword_, "' must be a whole number, ", least,
+                                     " or more: ", what));
+    return result;
+  }
+
+ private:
+  const std::vector<std::string>& words_;
+  std::size_t next_ = 0;
+  std::string keyword_;
+};
+
+void set_walls(SpotCommand& command, decltype(SpotCommand::walls) walls) {
+  if (!std::holds_alternative<std::monostate>(command.walls))
+    throw InvalidParameter("only one of 'box', 'cylinder' and 'region' can be given");
+  command.walls = std::move(walls);
+}
+
+void read_relax(SpotCommand& command, Words& words) {
+  const std::string how = words.value("'every' or 'never'");
+  if (how == "never")
+    command.relaxation.every = 0;
+  else if (how == "every")
+    command.relaxation.every = static_cast<int>(std::min<long long>(words.integer("moves between relaxations", 1), 1 << 30));
+  else
+    throw InvalidParameter(message("'relax ", how, "' is not known; allowed are 'relax every k' and 'relax never'"));
+}
+
+void read_strength(SpotCommand& command, Words& words) {
+  const std::string which = words.value("'half' or 'full'");
+  if (which == "half")
+    command.relaxation.strength = spot::RelaxationStrength::half_each;
+  else if (which == "full")
+    command.relaxation.strength = spot::RelaxationStrength::full_each;
+  else
+    throw InvalidParameter(message("'strength ", which, "' is not known; allowed are 'half' (2010) and 'full' (2006)"));
+}
+
+using Reader = std::function<void(SpotCommand&, Words&)>;
+
+const std::map<std::string, Reader>& readers() {
+  static const std::map<std::string, Reader> all = {
+      {"box",
+       [](SpotCommand& c, Words& w) {
+         BoxWalls walls{};
+         walls.x_low = w.number("xlo");
+         walls.x_high = w.number("xhi");
+         walls.y_low = w.number("ylo");
+         walls.y_high = w.number("yhi");
+         set_walls(c, walls);
+       }},
+      {"cylinder",
+       [](SpotCommand& c, Words& w) {
+         CylinderWalls walls{};
+         walls.x = w.number("x");
+         walls.y = w.number("y");
+         walls.radius = w.positive("the cylinder's radius");
+         set_walls(c, walls);
+       }},
+      {"region", [](SpotCommand& c, Words& w) { set_walls(c, RegionWalls{w.value("region-ID")}); }},
+      {"orifice",
+       [](SpotCommand& c, Words& w) {
+         const double x = w.number("x"), y = w.number("y"), z = w.number("z");
+         c.orifice = spot::Orifice{{x, y, z}, w.positive("the orifice's radius")};
+       }},
+      {"radius", [](SpotCommand& c, Words& w) { c.spots.radius = w.positive("the spot radius"); }},
+      {"influence", [](SpotCommand& c, Words& w) { c.spots.influence = w.positive("the influence"); }},
+      {"diffusion", [](SpotCommand& c, Words& w) { c.diffusion_length = w.positive("the diffusion length"); }},
+      {"dz", [](SpotCommand& c, Words& w) { c.spots.step_height = w.positive("the step height"); }},
+      {"speed", [](SpotCommand& c, Words& w) { c.spots.speed = w.positive("the drift speed"); }},
+      {"injection", [](SpotCommand& c, Words& w) { c.spots.injection_rate = w.positive("the injection rate"); }},
+      {"seed",
+       [](SpotCommand& c, Words& w) {
+         c.spots.seed = static_cast<std::uint64_t>(w.integer("the seed of the random numbers", 1));
+       }},
+      {"outlet", [](SpotCommand& c, Words& w) { c.outlet = w.number("z"); }},
+      {"buffer",
+       [](SpotCommand& c, Words& w) {
+         c.side_buffer = w.number("the distance of spots from side walls");
+         c.base_buffer = w.number("the distance of spots from the base");
+       }},
+      {"window", [](SpotCommand& c, Words& w) { c.window = w.positive("the window"); }},
+      {"relax", read_relax},
+      {"strength", read_strength},
+      {"alpha", [](SpotCommand& c, Words& w) { c.relaxation.alpha = w.positive("alpha"); }},
+      {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.number("the shell, in diameters"); }},
+      {"overlap",
+       [](SpotCommand& c, Words& w) { c.largest_overlap = w.positive("the largest overlap at the start, in diameters"); }},
+      {"average", [](SpotCommand& c, Words& w) {
+         c.average = static_cast<int>(std::min<long long>(w.integer("steps for the mean outflow", 1), 1 << 30));
+       }}};
+  return all;
+}
+
+void require(bool given, const char* keyword, const char* what) {
+  if (!given) throw InvalidParameter(message("keyword '", keyword, "' is missing: ", what));
+}
+
+}  // namespace
+
+SpotCommand parse_spot_command(const std::vector<std::string>& list) {
+  SpotCommand command;
+  command.spots.influence = 2.5e-3;
+  Words words(list);
+  while (!words.empty()) {
+    const std::string keyword = words.keyword();
+    const auto reader = readers().find(keyword);
+    if (reader == readers().end()) {
+      std::string known;
+      for (const auto& entry : readers()) known += ' ' + entry.first;
+      throw InvalidParameter(message("unknown keyword '", keyword, "'; known are:", known));
+    }
+    reader->second(command, words);
+  }
+  require(!std::holds_alternative<std::monostate>(command.walls), "box",
+          "walls are needed, by 'box xlo xhi ylo yhi', 'cylinder x y radius' or 'region ID'");
+  require(command.orifice.has_value(), "orifice", "'orifice x y z radius' says where grains leave and spots enter");
+  require(command.spots.speed > 0.0, "speed", "the drift speed of spots");
+  require(command.spots.injection_rate > 0.0, "injection", "spots born per time; outflow / (influence * grains a spot)");
+  return command;
+}
+
+void SpotCommand::resolve(double diameter) {
+  if (spots.radius == 0.0) spots.radius = 2.6 * diameter;
+  if (spots.step_height == 0.0) spots.step_height = 0.1 * diameter;
+  spots.step_width = spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height);
+  side_buffer = side_buffer.value_or(diameter);
+  base_buffer = base_buffer.value_or(spots.radius);
+  outlet = outlet.value_or(orifice->centre.z() - diameter);
+}

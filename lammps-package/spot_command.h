@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#ifndef SPOT_COMMAND_H
+#define SPOT_COMMAND_H
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "spot/container.hpp"
+#include "spot/parameters.hpp"
+
+/// `box xlo xhi ylo yhi`: four vertical plane walls.
+struct BoxWalls {
+  double x_low, x_high, y_low, y_high;
+};
+
+/// `cylinder x y radius`: an upright cylinder.
+struct CylinderWalls {
+  double x, y, radius;
+};
+
+/// `region ID`: the surface of a LAMMPS region.
+struct RegionWalls {
+  std::string id;
+};
+
+/// What a `fix ID group spot ...` command says, in the units of the deck. Where a length or a time was not
+/// given, it is empty and follows from the grain diameter or the timestep, see resolve().
+struct SpotCommand {
+  std::variant<std::monostate, BoxWalls, CylinderWalls, RegionWalls> walls;
+  std::optional<spot::Orifice> orifice;
+  spot::SpotParameters spots;
+  spot::RelaxationParameters relaxation;
+  std::optional<double> diffusion_length;
+  std::optional<double> outlet;
+  std::optional<double> side_buffer, base_buffer;
+  std::optional<double> window;
+  double largest_overlap = 0.03;  // in diameters
+  int average = 100;              // steps over which the outflow is averaged
+
+  /// Fills in what follows from the grain diameter: radius 2.6 d, diffusion length 1.25 d, step height 0.1 d,
+  /// buffers, outlet one diameter below the orifice.
+  void resolve(double diameter);
+
+  bool uses_region() const { return std::holds_alternative<RegionWalls>(walls); }
+};
+
+/// Reads the words after `fix ID group spot`. Throws spot::InvalidParameter that names the offending word and
+/// what is allowed. Knows no LAMMPS, so that it can be tested by itself.
+SpotCommand parse_spot_command(const std::vector<std::string>& words);
+
+#endif

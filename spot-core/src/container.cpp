@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/container.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spot/errors.hpp"
+
+namespace spot {
+
+void WallContacts::add(const WallContact& contact) {
+  if (size_ == capacity)
+    throw InvalidContainer(message("more than ", capacity, " walls are close to one grain"));
+  contacts_[size_++] = contact;
+}
+
+Vector3 Orifice::keep_within(double limit, const Vector3& position) const {
+  const double dx = position.x() - centre.x();
+  const double dy = position.y() - centre.y();
+  const double distance = std::hypot(dx, dy);
+  if (distance <= limit) return position;
+  const double scale = std::max(0.0, 2.0 * limit - distance) / distance;
+  return {centre.x() + scale * dx, centre.y() + scale * dy, position.z()};
+}
+
+void Container::require_entrance(double spot_radius) const {
+  if (orifice().radius < spot_radius)
+    throw InvalidContainer(message("orifice radius is ", orifice().radius, " but must be at least the spot radius, ",
+                                   spot_radius,
+                                   ": narrower orifices clog, which is outside the spot model"));
+}
+
+Vector3 Wall::reflect_spot(double buffer, const Vector3& target) const {
+  const WallContact contact = nearest(target);
+  if (contact.distance >= buffer) return target;
+  return target + 2.0 * (buffer - contact.distance) * contact.normal;
+}
+
+PlaneWall::PlaneWall(const Vector3& point, const Vector3& normal) {
+  const double length = normal.norm();
+  if (!(length > 0.0) || !std::isfinite(length) || !point.allFinite())
+    throw InvalidContainer("a plane wall needs a finite point and a finite normal that is not zero");
+  normal_ = normal / length;
+  offset_ = normal_.dot(point);
+}
+
+WallContact PlaneWall::nearest(const Vector3& centre) const { return {normal_.dot(centre) - offset_, normal_}; }
+
+CylinderWall::CylinderWall(double x, double y, double radius) : x_(x), y_(y), radius_(radius) {
+  if (!(radius > 0.0) || !std::isfinite(radius))
+    throw InvalidContainer(message("cylinder radius is ", radius, " but must be positive and finite"));
+}
+
+WallContact CylinderWall::nearest(const Vector3& centre) const {
+  const double dx = centre.x() - x_;
+  const double dy = centre.y() - y_;
+  const double distance = std::hypot(dx, dy);
+  if (distance == 0.0) return {radius_, {-1.0, 0.0, 0.0}};  // on the axis every direction is as good
+  return {radius_ - distance, {-dx / distance, -dy / distance, 0.0}};
+}
+
+BasePlate::BasePlate(const Orifice& orifice) : orifice_(orifice) {}
+
+WallContact BasePlate::nearest(const Vector3& centre) const {
+  const double dx = centre.x() - orifice_.centre.x();
+  const double dy = centre.y() - orifice_.centre.y();
+  const double height = centre.z() - orifice_.centre.z();
+  const double from_axis = std::hypot(dx, dy);
+  if (from_axis >= orifice_.radius) return {std::abs(height), {0.0, 0.0, height < 0.0 ? -1.0 : 1.0}};
+  if (from_axis == 0.0) return {std::hypot(orifice_.radius, height), {0.0, 0.0, 1.0}};
+  const double to_rim = orifice_.radius - from_axis;
+  const double distance = std::hypot(to_rim, height);
+  return {distance,
+          {-dx / from_axis * to_rim / distance, -dy / from_axis * to_rim / distance, height / distance}};
+}
+
+Vector3 BasePlate::reflect_spot(double buffer, const Vector3& target) const {
+  const double height = std::max(0.0, target.z() - orifice_.centre.z());
+  if (height >= buffer) return target;
+  const double rim_clearance = std::sqrt(buffer * buffer - height * height);
+  return orifice_.keep_within(std::max(0.0, orifice_.radius - rim_clearance), target);
+}
+
+WalledContainer::WalledContainer(const Orifice& orifice) : orifice_(orifice) {
+  if (!(orifice.radius > 0.0) || !std::isfinite(orifice.radius) || !orifice.centre.allFinite())
+    throw InvalidContainer(message("orifice radius is ", orifice.radius, " but must be positive and finite"));
+}
+
+void WalledContainer::add(std::unique_ptr<Wall> wall, double spot_buffer) {
+  if (!(spot_buffer >= 0.0) || !std::isfinite(spot_buffer))
+    throw InvalidContainer(message("spot buffer is ", spot_buffer, " but must be zero or positive"));
+  walls_.push_back({std::move(wall), spot_buffer});
+}
+
+bool WalledContainer::contains(const Vector3& centre) const {
+  return std::all_of(walls_.begin(), walls_.end(),
+                     [&](const Bounded& b) { return b.wall->nearest(centre).distance >= 0.0; }) &&
+         centre.z() >= orifice_.centre.z();
+}
+
+void WalledContainer::contacts(const Vector3& centre, double reach, WallContacts& contacts) const {
+  contacts.clear();
+  for (const Bounded& b : walls_) {
+    const WallContact contact = b.wall->nearest(centre);
+    if (contact.distance < reach) contacts.add(contact);
+  }
+}
+
+Vector3 WalledContainer::keep_spot_inside(const Vector3& /*start*/, const Vector3& target) const {
+  // A reflection can lead into the next wall's buffer; in a corner or a narrow gap a few rounds settle it.
+  constexpr int rounds = 8;
+  Vector3 position = target;
+  for (int round = 0; round < rounds; ++round) {
+    const Vector3 before = position;
+    for (const Bounded& b : walls_) position = b.wall->reflect_spot(b.spot_buffer, position);
+    if (position == before) break;
+  }
+  return position;
+}
+
+namespace {
+
+void require_order(const char* axis, double low, double high) {
+  if (!(low < high) || !std::isfinite(low) || !std::isfinite(high))
+    throw InvalidContainer(message("walls along ", axis, " are at ", low, " and ", high,
+                                   " but must be finite and in increasing order"));
+}
+
+void require_room(const char* axis, double low, double high, double buffer) {
+  if (high - low < 2.0 * buffer)
+    throw InvalidContainer(message("walls along ", axis, " are ", high - low, " apart but spots that keep ", buffer,
+                                   " from each need at least ", 2.0 * buffer));
+}
+
+}  // namespace
+
+std::unique_ptr<WalledContainer> box_silo(double x_low, double x_high, double y_low, double y_high,
+                                          const Orifice& orifice, const SpotBuffers& buffers) {
+  require_order("x", x_low, x_high);
+  require_order("y", y_low, y_high);
+  require_room("x", x_low, x_high, buffers.side);
+  require_room("y", y_low, y_high, buffers.side);
+  auto silo = std::make_unique<WalledContainer>(orifice);
+  const Vector3& c = orifice.centre;
+  const double r = orifice.radius;
+  const double slack = 1e-9 * r;  // an orifice exactly as wide as the silo is allowed, whatever the rounding
+  if (c.x() - r < x_low - slack || c.x() + r > x_high + slack || c.y() - r < y_low - slack ||
+      c.y() + r > y_high + slack)
+    throw InvalidContainer(message("orifice of radius ", r, " at (", c.x(), ", ", c.y(),
+                                   ") is wider than the base, x from ", x_low, " to ", x_high, ", y from ", y_low,
+                                   " to ", y_high));
+  silo->add(std::make_unique<BasePlate>(orifice), buffers.base);
+  silo->add(std::make_unique<PlaneWall>(Vector3(x_low, 0, 0), Vector3(1, 0, 0)), buffers.side);
+  silo->add(std::make_unique<PlaneWall>(Vector3(x_high, 0, 0), Vector3(-1, 0, 0)), buffers.side);
+  silo->add(std::make_unique<PlaneWall>(Vector3(0, y_low, 0), Vector3(0, 1, 0)), buffers.side);
+  silo->add(std::make_unique<PlaneWall>(Vector3(0, y_high, 0), Vector3(0, -1, 0)), buffers.side);
+  return silo;
+}
+
+std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius, const Orifice& orifice,
+                                               const SpotBuffers& buffers) {
+  auto wall = std::make_unique<CylinderWall>(x, y, radius);
+  if (radius < buffers.side)
+    throw InvalidContainer(message("cylinder radius is ", radius, " but spots keep ", buffers.side, " from its wall"));
+  auto silo = std::make_unique<WalledContainer>(orifice);
+  const double reach = std::hypot(orifice.centre.x() - x, orifice.centre.y() - y) + orifice.radius;
+  if (reach > radius * (1.0 + 1e-9))
+    throw InvalidContainer(message("orifice reaches ", reach, " from the axis and is wider than the base of radius ",
+                                   radius));
+  silo->add(std::make_unique<BasePlate>(orifice), buffers.base);
+  silo->add(std::move(wall), buffers.side);
+  return silo;
+}
+
+}  // namespace spot

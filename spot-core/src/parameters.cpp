@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/parameters.hpp"
+
+#include <cmath>
+
+#include "spot/errors.hpp"
+
+namespace spot {
+
+namespace {
+
+void require_positive(const char* name, double value) {
+  if (!(value > 0.0) || !std::isfinite(value))
+    throw InvalidParameter(message(name, " is ", value, " but must be positive and finite"));
+}
+
+}  // namespace
+
+double SpotParameters::spot_volume(double packing_fraction) const {
+  const double pi = 3.14159265358979323846;
+  return influence * packing_fraction * 4.0 / 3.0 * pi * radius * radius * radius;
+}
+
+void SpotParameters::validate() const {
+  require_positive("spot radius", radius);
+  require_positive("spot influence", influence);
+  if (influence >= 1.0) throw InvalidParameter(message("spot influence is ", influence, " but must be below 1"));
+  require_positive("spot step width", step_width);
+  require_positive("spot step height", step_height);
+  require_positive("spot speed", speed);
+  require_positive("spot injection rate", injection_rate);
+}
+
+double step_width_for(double diffusion_length, double step_height) {
+  require_positive("spot diffusion length", diffusion_length);
+  require_positive("spot step height", step_height);
+  return std::sqrt(4.0 * diffusion_length * step_height);
+}
+
+void RelaxationParameters::validate() const {
+  require_positive("relaxation alpha", alpha);
+  if (alpha >= 2.0) throw InvalidParameter(message("relaxation alpha is ", alpha, " but must be below 2"));
+  if (!(shell >= 0.0) || !std::isfinite(shell))
+    throw InvalidParameter(message("relaxation shell is ", shell, " but must be zero or positive"));
+  if (every < 0) throw InvalidParameter(message("relaxation interval is ", every, " but must be zero (never) or more"));
+}
+
+}  // namespace spot
