@@ -179,6 +179,6 @@ void SpotCommand::resolve(double diameter) {
   if (spots.step_height == 0.0) spots.step_height = 0.1 * diameter;
   spots.step_width = spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height);
   side_buffer = side_buffer.value_or(diameter);
-  base_buffer = base_buffer.value_or(spots.radius);
+  base_buffer = base_buffer.value_or(diameter);
   outlet = outlet.value_or(orifice->centre.z() - diameter);
 }

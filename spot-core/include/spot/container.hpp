@@ -136,7 +136,7 @@ class WalledContainer : public Container {
 /// How far spot centres stay from the walls.
 struct SpotBuffers {
   double side;  ///< d_w, from the side walls (2006: one diameter)
-  double base;  ///< from the base plate and the rim of its orifice; R_s closes the volume (see ARCHITECTURE.md)
+  double base;  ///< the same, from the base plate and the rim of its orifice
 };
 
 /// A silo with four vertical plane walls and a flat base at the height of the orifice's centre.

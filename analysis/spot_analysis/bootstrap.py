@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Standard errors of correlated samples: bootstrap over blocks of time."""
+
+import numpy as np
+
+BLOCK_TAU = 6.0
+MINIMUM_BLOCKS = 4
+RESAMPLES = 1000
+
+
+def block_sums(times, samples, span, block=BLOCK_TAU):
+    """Sums of the samples over blocks of equal duration, at least ``block``.
+
+    times : (n,) tau, within ``span`` = (start, end)
+    samples : (n, f)
+    Returns (k, f); blocks without a sample are left out. Grains are pushed by the same avalanches for some tau,
+    so shorter blocks would treat one event as several.
+    """
+    start, end = span
+    number = max(int((end - start) / block + 1e-9), 1)
+    index = ((np.asarray(times) - start) / (end - start) * number).astype(int).clip(0, number - 1)
+    present, index = np.unique(index, return_inverse=True)
+    sums = np.zeros((len(present), samples.shape[1]))
+    np.add.at(sums, index, samples)
+    return sums
+
+
+def bootstrap_error(sums, statistic, seed=20060513):
+    """Standard error of ``statistic`` (of summed samples), or None with fewer than MINIMUM_BLOCKS blocks.
+
+    sums : (k, f) of ``block_sums``
+    statistic : maps (..., f) to (...)
+
+    A resample of k blocks varies by (k-1)/k of the variance of independent blocks: the factor puts that right.
+    """
+    blocks = len(sums)
+    if blocks < MINIMUM_BLOCKS:
+        return None
+    weights = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1 / blocks), size=RESAMPLES)
+    values = statistic(weights @ sums)
+    return float(np.std(values) * np.sqrt(blocks / (blocks - 1)))

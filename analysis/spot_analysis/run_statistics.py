@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Everything that is measured on the dumps of one run, snapshot by snapshot, and the file that stores it.
+
+A statistics file holds what a comparison over any interval needs, in a few hundred kB: no dump is read again.
+"""
+
+import json
+import math
+import zipfile
+from collections import deque
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from . import flow, structure
+from .container import structure_region
+from .dump import find_dumps, read_frames
+from .errors import AnalysisError, DumpError, SceneError
+from .progress import Progress
+from .scene import Scene
+
+FORMAT = "spot-analysis run statistics 1"
+LAG_TAU = 2.0  # between the snapshots that velocities are taken from; the cadence of 2006
+TIME_TOLERANCE = 0.02  # tau; decks round their timestep
+PROFILE_HEIGHTS = np.array([10.0, 30.0, 50.0])
+PICTURE_PERIOD = 10.0  # tau; after PICTURE_MANY only every PICTURE_SPARSE
+PICTURE_MANY = 100.0
+PICTURE_SPARSE = 100.0
+PICTURE_QUANTUM = 0.01  # d
+LAYER_HEIGHT = 10.0  # d
+
+
+@dataclass
+class RunStatistics:
+    """Statistics of one run. T snapshots, L levels, P pairs of snapshots LAG_TAU apart; units d, tau, grains.
+
+    scene : units and geometry
+    provenance : text -> text, where the dumps came from
+    times : (T,)
+    grains : (T,) in the dump
+    levels : (L,) heights, 0, 1, 2 ... d
+    above : (T, L) grains above each level
+    outside : (T,) grains outside the container
+    largest_wall_overlap, largest_overlap : (T,) anywhere above z = 0
+    region_grains : (T,) in the region of ``structure_region``
+    region_largest_overlap, contacts, badness : (T,) there; not a number where the region is not full
+    rdf_edges : (K + 1,); rdf_counts : (T, K) partners, summed over the region's grains, 0 where it is not full
+    profile_heights : (H,); profile_edges : (X + 1,)
+    profile_start, profile_end : (P,) times
+    profile_counts, profile_sums : (P, H, X) grains and sums of their downward velocity
+    picture_times : (Q,); picture_sizes : (Q,) grains in each picture
+    picture_x, picture_z : positions of the front layer's grains in PICTURE_QUANTUM, one picture after the other
+    picture_layer : layer of LAYER_HEIGHT in which each of them started
+    """
+
+    scene: Scene
+    provenance: dict
+    times: np.ndarray
+    grains: np.ndarray
+    levels: np.ndarray
+    above: np.ndarray
+    outside: np.ndarray
+    largest_wall_overlap: np.ndarray
+    largest_overlap: np.ndarray
+    region_grains: np.ndarray
+    region_largest_overlap: np.ndarray
+    contacts: np.ndarray
+    badness: np.ndarray
+    rdf_edges: np.ndarray
+    rdf_counts: np.ndarray
+    profile_heights: np.ndarray
+    profile_edges: np.ndarray
+    profile_start: np.ndarray
+    profile_end: np.ndarray
+    profile_counts: np.ndarray
+    profile_sums: np.ndarray
+    picture_times: np.ndarray
+    picture_sizes: np.ndarray
+    picture_x: np.ndarray
+    picture_z: np.ndarray
+    picture_layer: np.ndarray
+
+    def region(self):
+        return structure_region(self.scene.container())
+
+    def count_above(self, level):
+        """(T,) grains above ``level``, one of ``levels``; 0 above the highest."""
+        index = np.searchsorted(self.levels, level)
+        return self.above[:, index] if index < len(self.levels) else np.zeros(len(self.times), dtype=np.int64)
+
+    def picture(self, index):
+        """(x, z, layer) of the front layer in picture number ``index``."""
+        start = int(self.picture_sizes[:index].sum())
+        part = slice(start, start + int(self.picture_sizes[index]))
+        return (self.picture_x[part] * PICTURE_QUANTUM, self.picture_z[part] * PICTURE_QUANTUM,
+                self.picture_layer[part])
+
+    def save(self, path):
+        header = {"format": FORMAT, "scene": self.scene.as_dict(), "provenance": self.provenance}
+        arrays = {name: _compact(getattr(self, name)) for name in ARRAYS}
+        with open(path, "wb") as handle:
+            np.savez_compressed(handle, header=json.dumps(header), **arrays)
+
+
+ARRAYS = tuple(f.name for f in fields(RunStatistics) if f.type is np.ndarray)
+
+
+def load(path):
+    """Read a statistics file; raises AnalysisError where it is not one."""
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            header = json.loads(str(stored["header"]))
+            if header["format"] != FORMAT:
+                raise AnalysisError(f"{path}: statistics of another format ('{header['format']}'); "
+                                    "measure the dumps again")
+            arrays = {name: _roomy(stored[name]) for name in ARRAYS}
+    except OSError as error:
+        raise AnalysisError(f"{path}: {error.strerror or error}") from error
+    except (KeyError, ValueError, zipfile.BadZipFile) as error:
+        raise AnalysisError(f"{path}: not a statistics file of measure.py ({error})") from error
+    return RunStatistics(Scene(**header["scene"]), header["provenance"], **arrays)
+
+
+def _compact(array):
+    """The smallest integers that hold the values; single precision for measured numbers."""
+    if array.dtype.kind in "iu" and array.size:
+        low, high = int(array.min()), int(array.max())
+        return array.astype(np.promote_types(np.min_scalar_type(low), np.min_scalar_type(high)))
+    return array.astype(np.float32) if array.ndim > 1 else array
+
+
+def _roomy(array):
+    return array.astype(np.int64) if array.dtype.kind in "iu" else array.astype(np.float64)
+
+
+def measure(source, scene, label="dumps", provenance=None, warn=print):
+    """Measure the dumps ``source`` (see ``dump.find_dumps``).
+
+    label : for the progress lines
+    warn : called with a line for each frame that is left out
+
+    Raises DumpError, SceneError.
+    """
+    files = len(find_dumps(source))
+    progress = Progress(label)
+    recorder = _Recorder(scene)
+    for number, frame in enumerate(read_frames(source, extra=("radius",), warn=warn), 1):
+        recorder.add(frame)
+        total = f" of {files}" if files > 1 else ""
+        progress(f"{number} snapshots{total}, t = {recorder.times[-1]:g} tau")
+    if not recorder.times:
+        raise DumpError(f"{source}: no frame in it")
+    if abs(recorder.times[0]) > TIME_TOLERANCE:
+        warn(f"{source}: the first snapshot is at t = {recorder.times[0]:g} tau; the density drop and the colours of "
+             "the layers are relative to it, not to the start")
+    progress.finish(f"{len(recorder.times)} snapshots measured, "
+                    f"t = {recorder.times[0]:g} to {recorder.times[-1]:g} tau")
+    return recorder.statistics(provenance or {})
+
+
+class _Recorder:
+    """Collects the statistics while frames go by; keeps the frames of the last LAG_TAU only."""
+
+    def __init__(self, scene):
+        self.times = []
+        self._scene = scene
+        self._container = scene.container()
+        self._region = structure_region(self._container)
+        self._snapshots = []
+        self._recent = deque()
+        self._profiles = []
+        self._pictures = []
+
+    def add(self, frame):
+        self._check(frame)
+        time = round(self._scene.time(frame.timestep), 6)
+        positions = frame.positions / self._scene.diameter
+        if not self.times:
+            self._start(frame.ids, positions)
+        self.times.append(time)
+        self._snapshots.append(self._snapshot(frame.ids, positions))
+        self._add_profile(time, frame.ids, positions)
+        if _is_picture_time(time):
+            self._pictures.append((time, *self._front_layer(frame.ids, positions)))
+
+    def _start(self, ids, positions):
+        height = positions[:, 2].max(initial=0)
+        self._levels = np.arange(0, math.ceil(height) + 1, dtype=float)
+        self._edges = np.linspace(-1, 1, max(int(round(2 * self._container.half_width)), 1) + 1) \
+            * self._container.half_width
+        self._initial_ids = ids
+        self._initial_layer = np.maximum(positions[:, 2] / LAYER_HEIGHT, 0).astype(np.int64)
+
+    def _check(self, frame):
+        """The scene must fit the dump: a wrong diameter makes every number wrong."""
+        diameter = self._scene.diameter
+        radius = frame.extra.get("radius")
+        if radius is not None and np.any(np.abs(2 * radius / diameter - 1) > 1e-3):
+            odd = np.argmax(np.abs(2 * radius / diameter - 1))
+            raise SceneError(f"grain {frame.ids[odd]} has radius {radius[odd]:g}, "
+                             f"but the scene's diameter is {diameter:g}")
+        if len(frame.ids) < 2:
+            return
+        extent = np.ptp(frame.positions, axis=0) + diameter
+        if len(frame.ids) * math.pi / 6 * diameter**3 > extent.prod():
+            raise SceneError(f"the scene's diameter {diameter:g} does not fit the dump: {len(frame.ids)} such grains "
+                             f"have more volume than the box of {extent[0]:.3g} x {extent[1]:.3g} x {extent[2]:.3g} "
+                             "they lie in")
+
+    def _snapshot(self, ids, positions):
+        """Every number of one snapshot by its name in RunStatistics."""
+        inside = positions[positions[:, 2] > 0]
+        values = {
+            "grains": len(ids),
+            "above": flow.count_above(positions[:, 2], self._levels),
+            "outside": int(self._container.outside(positions).sum()),
+            "largest_wall_overlap": float(self._container.wall_overlap(positions).max(initial=0)),
+            "largest_overlap": structure.largest_overlap(inside),
+            "region_grains": int(self._region.contains(positions).sum()),
+            "region_largest_overlap": math.nan,
+            "contacts": math.nan,
+            "badness": math.nan,
+            "rdf_counts": np.zeros(len(structure.RDF_EDGES) - 1, dtype=np.int64),
+        }
+        if self._region.is_covered(positions, structure.RDF_RANGE):
+            pairs = structure.region_pairs(positions, self._region)
+            values.update(
+                region_largest_overlap=float(max(1 - pairs.distance.min(initial=1), 0)),
+                contacts=structure.contacts_per_grain(pairs),
+                badness=structure.badness(pairs),
+                rdf_counts=structure.rdf_counts(pairs),
+            )
+        return values
+
+    def _add_profile(self, time, ids, positions):
+        """Velocities from the snapshot LAG_TAU ago, if there is one."""
+        self._recent.append((time, ids, positions))
+        while self._recent[0][0] < time - LAG_TAU - TIME_TOLERANCE:
+            self._recent.popleft()
+        start, start_ids, start_positions = self._recent[0]
+        if abs(time - start - LAG_TAU) <= TIME_TOLERANCE:
+            first, second = flow.common_grains(start_ids, ids)
+            self._profiles.append((start, time, *flow.velocity_profile(
+                start_positions[first], positions[second], time - start, PROFILE_HEIGHTS, self._edges)))
+
+    def _front_layer(self, ids, positions):
+        """x, z (PICTURE_QUANTUM) and starting layer of the grains at the wall y = -half_depth."""
+        front = (positions[:, 1] < 1 - self._container.half_depth) & (positions[:, 2] > -1)
+        place = np.searchsorted(self._initial_ids, ids[front]).clip(0, len(self._initial_ids) - 1)
+        x, _, z = np.rint(positions[front] / PICTURE_QUANTUM).astype(np.int64).T
+        order = np.argsort(z, kind="stable")  # neighbours in the file look alike, so it compresses better
+        return x[order], z[order], self._initial_layer[place][order]
+
+    def statistics(self, provenance):
+        series = {name: np.array([snapshot[name] for snapshot in self._snapshots]) for name in self._snapshots[0]}
+        bins = (0, len(PROFILE_HEIGHTS), len(self._edges) - 1)
+        profiles = list(zip(*self._profiles)) or [[], [], np.empty(bins, dtype=np.int64), np.empty(bins)]
+        pictures = list(zip(*self._pictures)) or [[], [], [], []]
+        x, z, layer = (np.concatenate([np.empty(0, dtype=np.int64), *part]) for part in pictures[1:])
+        return RunStatistics(
+            scene=self._scene, provenance=provenance, times=np.array(self.times), levels=self._levels,
+            rdf_edges=structure.RDF_EDGES, profile_heights=PROFILE_HEIGHTS, profile_edges=self._edges,
+            profile_start=np.array(profiles[0]), profile_end=np.array(profiles[1]),
+            profile_counts=np.array(profiles[2]), profile_sums=np.array(profiles[3]),
+            picture_times=np.array(pictures[0]),
+            picture_sizes=np.array([len(part) for part in pictures[1]], dtype=np.int64),
+            picture_x=x, picture_z=z, picture_layer=layer, **series)
+
+
+def _is_picture_time(time):
+    period = PICTURE_PERIOD if time < PICTURE_MANY + TIME_TOLERANCE else PICTURE_SPARSE
+    return abs(time - period * round(time / period)) <= TIME_TOLERANCE

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Synthetic packings and dumps with known answers."""
+
+import gzip
+import itertools
+import json
+import math
+
+import numpy as np
+
+SCENE = {"program": "synthetic", "diameter": 1.0, "gravity": 1.0, "timestep": 0.01,
+         "half_width_x": 10.0, "half_depth_y": 4.0, "orifice_radius": 12.0}  # no base: the plug falls through
+LAYER = 0.99  # d between the layers of the plug: neighbours above and below overlap by 0.01 d
+SPACING = 1.001  # d between its columns
+
+
+def frame_text(timestep, ids, positions, columns="id x y z", before="", box=((-1, 1), (-2, 2), (0, 4)), extra=()):
+    """One frame; ``extra`` holds further columns by name, (name, values)."""
+    values = dict(zip(("id", "x", "y", "z"), (ids, *np.asarray(positions).T)), type=np.ones(len(ids)), **dict(extra))
+    names = columns.split()
+    rows = "".join(" ".join(f"{values[name][row]:.12g}" for name in names) + " \n" for row in range(len(ids)))
+    bounds = "".join(f"{low} {high}\n" for low, high in box)
+    return (f"{before}ITEM: TIMESTEP\n{timestep}\nITEM: NUMBER OF ATOMS\n{len(ids)}\n"
+            f"ITEM: BOX BOUNDS ff ff ff\n{bounds}ITEM: ATOMS {columns} \n{rows}")
+
+
+def write_text(path, text):
+    """Write plain text, or gzip if the name says so; returns the path as text."""
+    path.write_bytes(gzip.compress(text.encode()) if path.suffix == ".gz" else text.encode())
+    return str(path)
+
+
+def plug():
+    """A lattice of 20 x 8 columns 80 layers high in the silo of SCENE; returns (12800, 3) in d."""
+    x = (np.arange(20) - 9.5) * SPACING
+    y = (np.arange(8) - 3.5) * SPACING
+    z = (np.arange(80) + 0.3) * LAYER
+    return np.array(list(itertools.product(x, y, z)))
+
+
+def write_plug_flow(folder, speed, times, scene=None, files=True):
+    """Dumps of the plug falling at ``speed`` (layers per 2 tau), grains below z = 0 removed, and scene.json.
+
+    scene : SCENE or one in other units of length and time
+    """
+    scene = scene or SCENE
+    tau = math.sqrt(scene["diameter"] / scene["gravity"])
+    folder.mkdir()
+    (folder / "scene.json").write_text(json.dumps(scene))
+    start, ids, texts = plug(), np.arange(1, 12801), []
+    for time in times:
+        positions = start - [0, 0, speed * LAYER * time / 2]
+        left = positions[:, 2] > 0
+        step = round(time * tau / scene["timestep"])
+        texts.append((step, frame_text(step, ids[left], positions[left] * scene["diameter"])))
+    if files:
+        for step, text in texts:
+            write_text(folder / f"run.{step}.dump.gz", text)
+    else:
+        write_text(folder / "run.dump", "".join(text for _, text in texts))
+    return str(folder)
+
+
+def fcc(cells, spacing):
+    """Face-centred cubic crystal of ``cells`` = (nx, ny, nz) cubes with nearest neighbours ``spacing`` apart."""
+    corners = np.array(list(itertools.product(*(range(n) for n in cells))), dtype=float)
+    basis = np.array([[0, 0, 0], [0.5, 0.5, 0], [0.5, 0, 0.5], [0, 0.5, 0.5]])
+    return (corners[:, None] + basis).reshape(-1, 3) * spacing * math.sqrt(2)
+
+
+def sequential_packing(rng, grains, low, high, closest):
+    """Random sequential addition: points in a box, none closer than ``closest``."""
+    placed = np.empty((0, 3))
+    while len(placed) < grains:
+        point = rng.uniform(low, high)
+        if not len(placed) or np.min(((placed - point)**2).sum(axis=1)) > closest**2:
+            placed = np.vstack([placed, point])
+    return placed

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The stored DEM statistics against numbers taken from the same dumps by an independent script."""
+
+import pathlib
+
+import numpy as np
+import pytest
+from spot_analysis import comparison, run_statistics
+
+STORED = pathlib.Path(__file__).resolve().parents[2] / "examples" / "silo" / "reference" / "dem-statistics.npz"
+
+
+@pytest.fixture(scope="module")
+def dem():
+    return run_statistics.load(STORED)
+
+
+def quantities(dem, start, end):
+    interval = comparison.choose_interval(dem.times, start, end)
+    return comparison.quantities(comparison.IntervalView(dem, np.arange(len(dem.times)), interval))
+
+
+WINDOWS = pytest.mark.parametrize("window, span", [(0, (40, 92)), (1, (250, 300))])
+INDEPENDENT = {  # quoted without error
+    "outflow": (69.3, 70.6), "slab_count": (8770, 8770), "packing_fraction": (0.574, 0.575),
+    "profile_variance_10d": (25.7, 27.9), "profile_variance_30d": (74.9, 80.0), "profile_variance_50d": (113.9, 125.0),
+}
+ROUNDING = {"slab_count": 20, "packing_fraction": 0.0005}
+
+
+@WINDOWS
+def test_independent_numbers_lie_within_two_standard_errors(dem, window, span):
+    measured = quantities(dem, *span)
+    for name, values in INDEPENDENT.items():
+        tolerance = max(2 * measured[name].error, ROUNDING.get(name, 0))
+        assert measured[name].value == pytest.approx(values[window], abs=tolerance), name
+
+
+@WINDOWS
+def test_independent_numbers_are_met_exactly_where_the_samples_are_known(dem, window, span):
+    """Outflow was the slope of a straight line, badness and overlap came from the snapshots at multiples of 8 tau."""
+    inside = (dem.times >= span[0]) & (dem.times <= span[1])
+    slope = np.polyfit(dem.times[inside], dem.count_above(0)[inside], 1)[0]
+    assert round(-slope, 1) == (69.3, 70.6)[window]
+    sampled = inside & (dem.times % 8 == 0)
+    assert round(dem.badness[sampled].mean() * 1e5, 2) == (1.73, 1.64)[window]
+    assert round(dem.region_largest_overlap[sampled].max(), 4) == (0.0093, 0.0086)[window]
+
+
+def test_at_rest(dem):
+    assert dem.count_above(50)[0] - dem.count_above(70)[0] == 9191
+    assert dem.contacts[0] == pytest.approx(5.2, abs=0.05)
+    assert dem.badness[0] == pytest.approx(7.8e-5, rel=0.01)
+    assert dem.largest_overlap[0] == pytest.approx(0.0125, abs=5e-5)
+
+
+def test_no_grain_is_ever_outside(dem):
+    assert dem.outside.max() == 0
+    assert dem.largest_wall_overlap.max() < 0.015
+
+
+def test_fluxes_equal_the_outflow(dem):
+    """Over 200-304 tau; within 2 % or two standard errors."""
+    measured = quantities(dem, 200, 304)
+    for height in comparison.FLUX_HEIGHTS:
+        ratio = measured[f"flux_{height}d_over_outflow"]
+        assert ratio.value == pytest.approx(1, abs=max(0.02, 2 * ratio.error))

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scene files and options."""
+
+import json
+import math
+
+import pytest
+from spot_analysis.errors import SceneError
+from spot_analysis.scene import NUMBERS, load_scene
+
+from synthetic import SCENE
+
+
+def write(folder, values):
+    (folder / "scene.json").write_text(values if isinstance(values, str) else json.dumps(values))
+    return str(folder)
+
+
+def test_reads_the_file_beside_the_dumps(tmp_path):
+    source = write(tmp_path, {**SCENE, "diameter": 0.003, "gravity": 9.81, "timestep": 1.75e-6, "grains": 55000})
+    for dumps in (source, f"{source}/run.*.dump"):
+        scene = load_scene(dumps)
+        assert scene.grains == 55000
+        assert scene.tau == pytest.approx(math.sqrt(0.003 / 9.81))
+        assert scene.time(20000) == pytest.approx(2.0, rel=1e-3)
+        assert scene.container().half_depth == pytest.approx(4 / 0.003)
+
+
+def test_options_win_over_the_file_and_suffice_without_it(tmp_path):
+    assert load_scene(write(tmp_path, SCENE), overrides={"diameter": 2.0, "gravity": None}).diameter == 2.0
+    assert load_scene("absent", overrides={key: SCENE[key] for key in NUMBERS}).diameter == 1.0
+
+
+@pytest.mark.parametrize("key", NUMBERS)
+def test_missing_key_is_named(tmp_path, key):
+    source = write(tmp_path, {k: v for k, v in SCENE.items() if k != key})
+    with pytest.raises(SceneError, match=f"scene key '{key}' is missing in"):
+        load_scene(source)
+
+
+def test_no_file_is_named(tmp_path):
+    with pytest.raises(SceneError, match="'diameter' is missing .no .*scene.json"):
+        load_scene(str(tmp_path))
+
+
+@pytest.mark.parametrize("value", [0, -1, "3 mm", None, True, math.nan, math.inf])
+def test_bad_value_is_named(tmp_path, value):
+    with pytest.raises(SceneError, match="'timestep' must be a positive number"):
+        load_scene(write(tmp_path, {**SCENE, "timestep": value}))
+
+
+@pytest.mark.parametrize("text", ["{", "[1]"])
+def test_bad_file(tmp_path, text):
+    with pytest.raises(SceneError, match="scene.json"):
+        load_scene(write(tmp_path, text))
