@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Write the base of the silo, a plate at z = 0 with a round orifice at its centre, as an ASCII STL mesh.
+
+Lengths are in metres. The plate fills |x| <= half_width, |y| <= half_depth. Each side of the orifice's polygon is joined to the
+wall that lies behind it as seen from the centre, by two triangles. Where the rim comes closer to a wall than `sliver`, that
+piece is left out: triangles there would be so thin that LIGGGHTS rejects them, and a grain whose centre is half a diameter
+from the wall would not rest on them.
+"""
+
+import argparse
+import math
+import sys
+
+
+def rim_angles(half_width, half_depth, sides):
+    """Angles of the rim's vertices: evenly spread, with those of the plate's four corners among them."""
+    corner = math.atan2(half_depth, half_width)
+    # One quadrant in two sectors, each divided evenly, so that the mesh has the silo's two mirror planes.
+    below = max(1, round(sides / 4 * corner / (math.pi / 2)))
+    above = max(1, round(sides / 4) - below)
+    quadrant = [corner * i / below for i in range(below)]
+    quadrant += [corner + (math.pi / 2 - corner) * i / above for i in range(above)]
+    quadrant.append(math.pi / 2)
+    half = quadrant + [math.pi - a for a in reversed(quadrant[:-1])]
+    return half + [-a for a in reversed(half[1:-1])]
+
+
+def base_triangles(half_width, half_depth, radius, sliver, sides=96):
+    """Triangles (three (x, y) corners, anticlockwise) of the plate around the orifice."""
+    if min(half_width, half_depth, radius) <= 0 or sliver < 0:
+        raise ValueError("half width, half depth and radius must be positive, sliver must not be negative")
+    for wall, name in ((half_width, "half width"), (half_depth, "half depth")):
+        if radius > wall * (1 + 1e-9):
+            raise ValueError(f"orifice of radius {radius:g} m does not fit the base: its {name} is {wall:g} m")
+
+    angles = rim_angles(half_width, half_depth, sides)
+    rays = []
+    for angle in angles:
+        x, y = math.cos(angle), math.sin(angle)
+        # A ray along an axis never meets the walls parallel to it.
+        reach = min(half_width / abs(x) if abs(x) > 1e-12 else math.inf,
+                    half_depth / abs(y) if abs(y) > 1e-12 else math.inf)
+        gap = min(half_width - radius * abs(x), half_depth - radius * abs(y))
+        rays.append(((radius * x, radius * y), (reach * x, reach * y), gap))
+
+    triangles = []
+    for (rim, wall, gap), (next_rim, next_wall, next_gap) in zip(rays, rays[1:] + rays[:1]):
+        if min(gap, next_gap) <= sliver:
+            continue
+        triangles.append((rim, wall, next_wall))
+        triangles.append((rim, next_wall, next_rim))
+    if not triangles:
+        raise ValueError(f"orifice of radius {radius:g} m leaves nothing of the base but slivers under {sliver:g} m")
+    return triangles
+
+
+def write_stl(path, triangles):
+    with open(path, "w", encoding="ascii") as stl:
+        stl.write("solid base\n")
+        for triangle in triangles:
+            stl.write("facet normal 0 0 1\nouter loop\n")
+            for x, y in triangle:
+                stl.write(f"vertex {x:.9g} {y:.9g} 0\n")
+            stl.write("endloop\nendfacet\n")
+        stl.write("endsolid base\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("half_width", type=float, help="half width of the base along x (m)")
+    parser.add_argument("half_depth", type=float, help="half depth of the base along y (m)")
+    parser.add_argument("radius", type=float, help="radius of the orifice (m)")
+    parser.add_argument("sliver", type=float, help="leave out the plate where the rim is closer to a wall than this (m)")
+    parser.add_argument("stl", help="file to write")
+    args = parser.parse_args()
+    try:
+        write_stl(args.stl, base_triangles(args.half_width, args.half_depth, args.radius, args.sliver))
+    except (ValueError, OSError) as error:
+        sys.exit(f"ERROR: {error}")
+
+
+if __name__ == "__main__":
+    main()
