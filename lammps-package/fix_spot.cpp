@@ -39,7 +39,8 @@ enum BoundaryKind { PERIODIC = 0, FIXED = 1 };    // as in domain.h
 struct FixSpot::Model {
   SpotCommand command;
   double diameter = 0.0;
-  double grain_mass = 0.0;
+  double drained_mass = 0.0;
+  double overlap_after_run = 0.0;
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
   bigint windows = 0;        // done since the fix was made; the clock of the spots
@@ -71,10 +72,9 @@ FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg) : Fix(instance, narg, a
   size_local_rows = 0;
   local_freq = 1;
 
-  if (!atom->radius_flag)
+  if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, std::string("fix spot needs grains with a radius: use atom_style sphere"));
   if (lmp->kokkos) error->all(FLERR, std::string("fix spot does not work with the KOKKOS package"));
-  if (domain->triclinic) error->all(FLERR, std::string("fix spot does not work in a triclinic box"));
   if (domain->dimension != 3) error->all(FLERR, std::string("fix spot needs a simulation in 3 dimensions"));
   try {
     model->command = parse_spot_command(std::vector<std::string>(arg + 3, arg + narg));
@@ -98,6 +98,7 @@ void FixSpot::check_run()
     error->all(FLERR, std::string("fix spot does not work with run_style respa"));
   if (comm->nprocs > 1)
     error->all(FLERR, message("fix spot relaxes in the order of time and runs on 1 MPI rank, not on ", comm->nprocs));
+  if (domain->triclinic) error->all(FLERR, std::string("fix spot does not work in a triclinic box"));
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side)
       if (domain->boundary[axis][side] != FIXED)
@@ -106,9 +107,10 @@ void FixSpot::check_run()
 
   model->command.window = model->command.window.value_or(update->dt);
   const double ratio = update->dt / *model->command.window;
-  if (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
+  constexpr double most = 1e9;    // an int holds the number of windows in a step
+  if (ratio < 0.5 || ratio > most || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
     error->all(FLERR, message("fix spot: timestep ", update->dt, " must be a whole number of windows of ",
-                              *model->command.window));
+                              *model->command.window, ", from 1 to ", most));
   model->windows_per_step = static_cast<int>(std::lround(ratio));
 }
 
@@ -132,9 +134,12 @@ void FixSpot::check_grains()
     if (!(std::abs(2.0 * atom->radius[i] - diameter) <= 1e-6 * diameter))
       error->one(FLERR, message("fix spot needs grains of one diameter, ", diameter, ": grain ", atom->tag[i], " has ",
                                 2.0 * atom->radius[i]));
+  // LAMMPS would stop a little later, too, but without naming the grain.
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (!std::isfinite(atom->x[i][0]) || !std::isfinite(atom->x[i][1]) || !std::isfinite(atom->x[i][2]))
+      error->one(FLERR, message("fix spot: position of grain ", atom->tag[i], " is not finite"));
   if (!(diameter > 0.0)) error->all(FLERR, std::string("fix spot: the grains have no diameter; use 'set ... diameter'"));
   model->diameter = diameter;
-  model->grain_mass = atom->rmass[0];
 }
 
 void FixSpot::init()
@@ -146,10 +151,35 @@ void FixSpot::init()
   comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
   try {
     model->command.resolve(model->diameter);
+    check_box();
     make_container();
   } catch (const spot::Error &e) {
     error->all(FLERR, message("fix spot: ", e.what()));
   }
+}
+
+/// LAMMPS drops what is outside its box, so the walls and the outlet must not be.
+void FixSpot::check_box()
+{
+  const auto require = [this](char axis, double low, double high) {
+    const int k = axis - 'x';
+    const double slack = 1e-9 * (domain->boxhi[k] - domain->boxlo[k]);
+    if (low < domain->boxlo[k] - slack || high > domain->boxhi[k] + slack)
+      throw spot::InvalidContainer(message("the walls along ", axis, ", at ", low, " and ", high,
+                                           ", are not within the simulation box, from ", domain->boxlo[k], " to ",
+                                           domain->boxhi[k]));
+  };
+  const SpotCommand &command = model->command;
+  if (const auto *box = std::get_if<BoxWalls>(&command.walls)) {
+    require('x', box->x_low, box->x_high);
+    require('y', box->y_low, box->y_high);
+  } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
+    require('x', cylinder->x - cylinder->radius, cylinder->x + cylinder->radius);
+    require('y', cylinder->y - cylinder->radius, cylinder->y + cylinder->radius);
+  }
+  if (*command.outlet < domain->boxlo[2])
+    throw spot::InvalidContainer(message("outlet is at z = ", *command.outlet, " but the simulation box begins at ",
+                                         domain->boxlo[2], ": grains would be lost before they are counted"));
 }
 
 /// For every run anew: a region can have been deleted or defined again since the last one.
@@ -208,6 +238,15 @@ void FixSpot::setup(int)
   list_spots();
 }
 
+/// Index of a grain in LAMMPS' arrays, which no longer hold it if it was outside the simulation box.
+int FixSpot::local_index(std::int64_t grain) const
+{
+  const auto found = model->local.find(static_cast<tagint>(grain));
+  if (found == model->local.end())
+    error->one(FLERR, message("fix spot: grain ", grain, " was lost by LAMMPS: make the simulation box larger"));
+  return found->second;
+}
+
 /// Positions go back to LAMMPS; the velocity is the displacement over the step divided by the timestep.
 void FixSpot::write_grains()
 {
@@ -218,7 +257,7 @@ void FixSpot::write_grains()
   const double per_time = 1.0 / update->dt;
   for (std::size_t slot = 0; slot < packing.slots(); ++slot) {
     if (!packing.present(slot)) continue;
-    const int i = local.at(static_cast<tagint>(packing.id(slot)));
+    const int i = local_index(packing.id(slot));
     const double moved[3] = {packing.x()[slot], packing.y()[slot], packing.z()[slot]};
     for (int axis = 0; axis < 3; ++axis) {
       atom->v[i][axis] = (moved[axis] - atom->x[i][axis]) * per_time;
@@ -244,6 +283,7 @@ void FixSpot::initial_integrate(int)
   }
   for (const spot::Grain &grain : drainage.take_drained()) model->leaving.push_back(static_cast<tagint>(grain.id));
   write_grains();
+  for (const tagint grain : model->leaving) model->drained_mass += atom->rmass[local_index(grain)];
   if (!model->leaving.empty()) next_reneighbor = update->ntimestep;
 
   model->drained_after_step.push_back(drainage.counters().drained);
@@ -256,8 +296,7 @@ void FixSpot::pre_exchange()
 {
   if (model->leaving.empty()) return;
   for (const tagint grain : model->leaving) {
-    const int i = model->local.at(grain);
-    atom->x[i][2] = domain->boxlo[2] - model->diameter;
+    atom->x[local_index(grain)][2] = domain->boxlo[2] - model->diameter;
   }
   atom->natoms -= static_cast<bigint>(model->leaving.size());
   model->leaving.clear();
@@ -288,6 +327,12 @@ void FixSpot::list_spots()
    output
 ------------------------------------------------------------------------- */
 
+/// Between runs a region may be deleted, and finding the overlap may need the walls: find it while they are there.
+void FixSpot::post_run()
+{
+  if (model->drainage) model->overlap_after_run = model->drainage->largest_overlap().depth;
+}
+
 double FixSpot::compute_vector(int which)
 {
   if (!model->drainage) return 0.0;
@@ -296,9 +341,9 @@ double FixSpot::compute_vector(int which)
     case 0: return static_cast<double>(model->drainage->spots().size());
     case 1: return static_cast<double>(counters.moves);
     case 2: return static_cast<double>(counters.drained);
-    case 3: return static_cast<double>(counters.drained) * model->grain_mass;
+    case 3: return model->drained_mass;
     case 4: return mean_outflow();
-    case 5: return model->drainage->largest_overlap().depth;
+    case 5: return update->whichflag ? model->drainage->largest_overlap().depth : model->overlap_after_run;
     default: return static_cast<double>(counters.sweeps);
   }
 }

@@ -10,6 +10,7 @@ FixStyle(spot,FixSpot);
 
 #include "fix.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -31,6 +32,7 @@ class FixSpot : public Fix {
   void initial_integrate(int) override;
   void pre_exchange() override;
   void end_of_step() override;
+  void post_run() override;
   double compute_vector(int) override;
   double memory_usage() override;
 
@@ -42,8 +44,10 @@ class FixSpot : public Fix {
   void check_grains();
   void check_other_fixes();
   void make_container();
+  void check_box();
   std::vector<spot::Grain> grains_of_lammps() const;
   void write_grains();
+  int local_index(std::int64_t) const;
   void list_spots();
   double mean_outflow() const;
 };

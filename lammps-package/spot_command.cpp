@@ -34,7 +34,8 @@ class Words {
   double number(const char* what) {
     const std::string word = value(what);
     double result = 0.0;
-    const char* first = word.c_str() + (word.size() > 1 && word[0] == '+' ? 1 : 0);
+    const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // from_chars takes no plus sign
+    const char* first = word.c_str() + (plus ? 1 : 0);
     const auto [end, error] = std::from_chars(first, word.c_str() + word.size(), result);
     if (error != std::errc() || end != word.c_str() + word.size() || !std::isfinite(result))
       throw InvalidParameter(message("'", word, "' is not a finite number, but keyword '", keyword_,
@@ -45,6 +46,12 @@ class Words {
   double positive(const char* what) {
     const double result = number(what);
     if (result <= 0.0) throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be positive"));
+    return result;
+  }
+
+  double not_negative(const char* what) {
+    const double result = number(what);
+    if (result < 0.0) throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be zero or positive"));
     return result;
   }
 
@@ -130,14 +137,14 @@ const std::map<std::string, Reader>& readers() {
       {"outlet", [](SpotCommand& c, Words& w) { c.outlet = w.number("z"); }},
       {"buffer",
        [](SpotCommand& c, Words& w) {
-         c.side_buffer = w.number("the distance of spots from side walls");
-         c.base_buffer = w.number("the distance of spots from the base");
+         c.side_buffer = w.not_negative("the distance of spots from side walls");
+         c.base_buffer = w.not_negative("the distance of spots from the base");
        }},
       {"window", [](SpotCommand& c, Words& w) { c.window = w.positive("the window"); }},
       {"relax", read_relax},
       {"strength", read_strength},
       {"alpha", [](SpotCommand& c, Words& w) { c.relaxation.alpha = w.positive("alpha"); }},
-      {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.number("the shell, in diameters"); }},
+      {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap",
        [](SpotCommand& c, Words& w) { c.largest_overlap = w.positive("the largest overlap at the start, in diameters"); }},
       {"average", [](SpotCommand& c, Words& w) {

@@ -106,16 +106,17 @@ void WalledContainer::contacts(const Vector3& centre, double reach, WallContacts
   }
 }
 
-Vector3 WalledContainer::keep_spot_inside(const Vector3& /*start*/, const Vector3& target) const {
+Vector3 WalledContainer::keep_spot_inside(const Vector3& start, const Vector3& target) const {
   // A reflection can lead into the next wall's buffer; in a corner or a narrow gap a few rounds settle it.
   constexpr int rounds = 8;
   Vector3 position = target;
   for (int round = 0; round < rounds; ++round) {
     const Vector3 before = position;
     for (const Bounded& b : walls_) position = b.wall->reflect_spot(b.spot_buffer, position);
-    if (position == before) break;
+    if (position == before) return position;
   }
-  return position;
+  // Too narrow to step sideways.
+  return {start.x(), start.y(), target.z()};
 }
 
 namespace {

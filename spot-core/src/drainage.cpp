@@ -2,6 +2,7 @@
 #include "spot/drainage.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "spot/displacement.hpp"
 #include "spot/errors.hpp"
@@ -17,26 +18,51 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
       population_(spots, *container_),
       relaxation_(relaxation) {
   const double base = container_->orifice().centre.z();
-  const double lowest_reached = base - 2.0 * spots.radius;
+  // A newborn spot is 2 R_s tall, and the middle of its first step is half a step higher.
+  const double lowest_reached = base - 2.0 * spots.radius + 0.5 * spots.step_height;
   if (!(limits.outlet > lowest_reached && limits.outlet <= base))
     throw InvalidParameter(message("outlet is at z = ", limits.outlet, " but must be above ", lowest_reached,
                                    ", the reach of newborn spots, and not above the orifice, ", base));
-  require_valid_start(packing_, *container_, limits.largest_overlap);
+  if (!(limits.largest_overlap > 0.0))
+    throw InvalidParameter(message("largest overlap at the start is ", limits.largest_overlap,
+                                   " diameters but must be positive"));
+  require_valid_start();
 }
 
-void Drainage::replace(std::shared_ptr<const Container> container, Packing packing) {
-  require_valid_start(packing, *container, limits_.largest_overlap);
-  container_ = std::move(container);
-  packing_ = std::move(packing);
+/// Throws InvalidPacking, naming the grain, if one is neither inside the walls nor falling out of the orifice,
+/// above `lowest` and within `reach` of its axis.
+static void require_inside(const Packing& packing, const Container& container, double lowest, double reach) {
+  const Orifice& orifice = container.orifice();
+  for (std::size_t i = 0; i < packing.slots(); ++i) {
+    if (!packing.present(i)) continue;
+    const Vector3 centre = packing.position(i);
+    const bool falling = centre.z() < orifice.centre.z() && centre.z() >= lowest &&
+                         (centre - orifice.centre).head<2>().norm() <= reach;
+    if (!falling && !container.contains(centre))
+      throw InvalidPacking(message("grain ", packing.id(i), " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
+                                   ") is outside the container"));
+  }
 }
 
 void Drainage::require_inside() const {
-  const double base = container_->orifice().centre.z();
-  for (std::size_t i = 0; i < packing_.slots(); ++i)
-    if (packing_.present(i) && packing_.z()[i] >= base && !container_->contains(packing_.position(i)))
-      throw InvalidPacking(message("grain ", packing_.id(i), " has left the container at (", packing_.x()[i], ", ",
-                                   packing_.y()[i], ", ", packing_.z()[i],
-                                   "): the relaxation is too weak for these spots"));
+  // Falling grains may spread below the plate, and those at the edge of a relaxed region leave one move later.
+  spot::require_inside(packing_, *container_, limits_.outlet - packing_.diameter(),
+                       std::numeric_limits<double>::infinity());
+}
+
+void Drainage::require_valid_start() {
+  spot::require_inside(packing_, *container_, limits_.outlet, container_->orifice().radius);
+  const Overlap overlap = largest_overlap();
+  if (overlap.depth > limits_.largest_overlap * packing_.diameter())
+    throw InvalidPacking(message("grains ", overlap.first, " and ", overlap.second, " overlap by ",
+                                 overlap.depth / packing_.diameter(), " diameters at the start; at most ",
+                                 limits_.largest_overlap, " is allowed"));
+}
+
+void Drainage::replace(std::shared_ptr<const Container> container, Packing packing) {
+  spot::require_inside(packing, *container, limits_.outlet - packing.diameter(), container->orifice().radius);
+  container_ = std::move(container);
+  packing_ = std::move(packing);
 }
 
 void Drainage::advance_to(double time) {
@@ -83,19 +109,6 @@ std::vector<Grain> Drainage::take_drained() {
   drained.swap(drained_);
   std::sort(drained.begin(), drained.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
   return drained;
-}
-
-void require_valid_start(Packing& packing, const Container& container, double largest_overlap) {
-  packing.refresh(container);
-  for (const Grain& grain : packing.grains())
-    if (!container.contains(grain.position))
-      throw InvalidPacking(message("grain ", grain.id, " at (", grain.position.x(), ", ", grain.position.y(), ", ",
-                                   grain.position.z(), ") is outside the container"));
-  const Overlap overlap = packing.largest_overlap();
-  if (overlap.depth > largest_overlap * packing.diameter())
-    throw InvalidPacking(message("grains ", overlap.first, " and ", overlap.second, " overlap by ",
-                                 overlap.depth / packing.diameter(), " diameters at the start; at most ",
-                                 largest_overlap, " is allowed"));
 }
 
 }  // namespace spot

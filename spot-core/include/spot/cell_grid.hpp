@@ -41,7 +41,7 @@ class CellGrid {
   static int clamp(double cell, int n) { return cell < 0.0 ? 0 : cell >= n ? n - 1 : static_cast<int>(cell); }
   /// Distance along one axis from a place to a cell, in cells; the outermost cells reach to infinity.
   static double gap(double at, int cell, int n) {
-    if (at < cell) return cell == n - 1 && at >= n ? 0.0 : cell - at;
+    if (at < cell) return cell == 0 ? 0.0 : cell - at;
     if (at > cell + 1) return cell == n - 1 ? 0.0 : at - cell - 1;
     return 0.0;
   }

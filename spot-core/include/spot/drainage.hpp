@@ -41,8 +41,8 @@ class Drainage {
   /// Goes on until `time`, in the units of the rates; births and steps start at time 0.
   void advance_to(double time);
 
-  /// Goes on with other grains or walls, as after somebody else changed them; the spots stay.
-  /// Throws InvalidPacking as the constructor does.
+  /// Goes on with other grains or walls, as after somebody else changed them; the spots stay. Throws InvalidPacking
+  /// if a grain is outside. How deeply grains overlap is not asked: in flow that is the relaxation's business.
   void replace(std::shared_ptr<const Container> container, Packing packing);
 
   /// Throws InvalidPacking, naming the grain, if one has left the container other than through the orifice.
@@ -57,6 +57,7 @@ class Drainage {
   std::vector<Grain> take_drained();
 
  private:
+  void require_valid_start();
   void carry_out(const Move& move);
   void take_out_drained();
 
@@ -70,9 +71,5 @@ class Drainage {
   std::vector<Grain> drained_;
   std::vector<std::uint32_t> near_;  // grains around a move; kept to save allocations
 };
-
-/// Throws InvalidPacking, naming the grains, unless all are inside the container and no two overlap by
-/// more than `largest_overlap` (in diameters).
-void require_valid_start(Packing& packing, const Container& container, double largest_overlap);
 
 }  // namespace spot

@@ -5,26 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "spot/container.hpp"
-#include "spot/displacement.hpp"
-#include "spot/parameters.hpp"
+#include "spot/spot_walk.hpp"
 
 namespace spot {
 
-/// One diffusing spot of free volume.
-struct Spot {
-  std::int64_t id;
-  std::int64_t steps;  ///< taken so far
-  Vector3 position;
-  double next_step;    ///< time of the step to come
-};
-
 /// Births, steps and removals of all spots, in order of (time, id).
-///
-/// A spot is born at the rate nu_s, uniformly on the disc of the orifice's radius less R_s, and R_s below
-/// the orifice: it enters the packing with its whole influence, so that as much leaves through the
-/// orifice as the spot brings down through any height above (volume closes; see ARCHITECTURE.md).
-/// Walks do not look at grains. All randomness follows from (seed, spot id, step number).
 class SpotPopulation {
  public:
   /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
@@ -43,7 +28,7 @@ class SpotPopulation {
   void give_birth(const Container& container);
   void settle();
 
-  SpotParameters parameters_;
+  SpotWalk walk_;
   std::vector<Spot> spots_;  // a heap, earliest next step first; the spot in hand is its last element
   bool in_hand_ = false;     // is the spot that moved last still outside the heap's order?
   double next_birth_;

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "spot/container.hpp"
+#include "spot/displacement.hpp"
+#include "spot/parameters.hpp"
+
+namespace spot {
+
+/// One diffusing spot of free volume.
+struct Spot {
+  std::int64_t id;
+  std::int64_t steps;  ///< taken so far
+  Vector3 position;
+  double next_step;  ///< time of the step to come
+};
+
+/// How spots are born and walk. Walks do not look at grains, and there is no state: all follows from
+/// (seed, spot id, step number).
+///
+/// A spot is born uniformly on the disc of the orifice's radius less R_s, and R_s below the orifice: it
+/// enters the packing with its whole influence, so that as much leaves through the orifice as the spot
+/// brings down through any height above (volume closes; see ARCHITECTURE.md).
+class SpotWalk {
+ public:
+  /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
+  SpotWalk(const SpotParameters& parameters, const Container& container);
+
+  /// Time from the birth before it, or from time 0, to the birth of spot `id`: births are Poisson at rate nu_s.
+  double time_before_birth(std::int64_t id) const;
+
+  Spot birth(std::int64_t id, double time, const Container& container) const;
+
+  /// Carries out the next step of a spot and draws the time of the one after.
+  Move step(Spot& spot, const Container& container) const;
+
+ private:
+  SpotParameters parameters_;
+};
+
+}  // namespace spot

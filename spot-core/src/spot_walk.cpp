@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/spot_walk.hpp"
+
+#include <cmath>
+
+#include "spot/random.hpp"
+
+namespace spot {
+
+namespace {
+
+std::array<double, 4> numbers_of_birth(const SpotParameters& p, std::int64_t id) {
+  return uniform(p.seed, RandomPurpose::birth, static_cast<std::uint64_t>(id), 0);
+}
+
+/// Numbers of the step to come: waiting time before it, and its direction.
+std::array<double, 4> numbers_of_step(const SpotParameters& p, const Spot& spot) {
+  return uniform(p.seed, RandomPurpose::step, static_cast<std::uint64_t>(spot.id),
+                 static_cast<std::uint64_t>(spot.steps));
+}
+
+/// One of the four vectors (+-dx, 0, dz), (0, +-dx, dz) (2006; trap: 2010 prints diagonals that spread twice as fast).
+Vector3 step_vector(const SpotParameters& p, double uniform) {
+  switch (static_cast<int>(4.0 * uniform)) {
+    case 0: return {p.step_width, 0.0, p.step_height};
+    case 1: return {-p.step_width, 0.0, p.step_height};
+    case 2: return {0.0, p.step_width, p.step_height};
+    default: return {0.0, -p.step_width, p.step_height};
+  }
+}
+
+}  // namespace
+
+SpotWalk::SpotWalk(const SpotParameters& parameters, const Container& container) : parameters_(parameters) {
+  parameters_.validate();
+  container.require_entrance(parameters_.radius);
+}
+
+double SpotWalk::time_before_birth(std::int64_t id) const {
+  return exponential(numbers_of_birth(parameters_, id)[0], parameters_.injection_rate);
+}
+
+Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) const {
+  const auto numbers = numbers_of_birth(parameters_, id);
+  const Orifice& orifice = container.orifice();
+  const double from_axis = (orifice.radius - parameters_.radius) * std::sqrt(numbers[1]);
+  const double angle = 2.0 * 3.14159265358979323846 * numbers[2];
+  Spot spot{id, 0, orifice.centre, time};
+  spot.position += Vector3(from_axis * std::cos(angle), from_axis * std::sin(angle), -parameters_.radius);
+  spot.next_step += exponential(numbers_of_step(parameters_, spot)[0], parameters_.move_rate());
+  return spot;
+}
+
+Move SpotWalk::step(Spot& spot, const Container& container) const {
+  const Vector3 start = spot.position;
+  const double when = spot.next_step;
+  const Vector3 step = step_vector(parameters_, numbers_of_step(parameters_, spot)[1]);
+  spot.position = container.keep_spot_inside(start, start + step);
+  ++spot.steps;
+  spot.next_step += exponential(numbers_of_step(parameters_, spot)[0], parameters_.move_rate());
+  return {when, spot.id, 0.5 * (start + spot.position), spot.position - start};
+}
+
+}  // namespace spot

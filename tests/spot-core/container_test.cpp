@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/container.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "scenes.hpp"
+
+namespace {
+
+using spot::BasePlate;
+using spot::box_silo;
+using spot::cylinder_silo;
+using spot::CylinderWall;
+using spot::InvalidContainer;
+using spot::Orifice;
+using spot::PlaneWall;
+using spot::SpotBuffers;
+using spot::Vector3;
+using spot::WallContact;
+using spot::WallContacts;
+using spot::WalledContainer;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const double infinity = std::numeric_limits<double>::infinity();
+const Orifice orifice{{0.0, 0.0, 0.0}, 4.0};
+const SpotBuffers buffers{1.0, 2.6};
+
+void expect_contact(const WallContact& contact, double distance, const Vector3& normal) {
+  EXPECT_NEAR(contact.distance, distance, 1e-14);
+  EXPECT_NEAR((contact.normal - normal).norm(), 0.0, 1e-14)
+      << "normal " << contact.normal.transpose() << ", expected " << normal.transpose();
+}
+
+TEST(ContainerAnalytic, PlaneGivesSignedDistanceAndUnitNormal) {
+  const PlaneWall wall({0.0, 0.0, 1.0}, {0.0, 0.0, 5.0});
+  expect_contact(wall.nearest({7.0, -3.0, 3.5}), 2.5, {0.0, 0.0, 1.0});
+  expect_contact(wall.nearest({7.0, -3.0, 0.5}), -0.5, {0.0, 0.0, 1.0});
+  const double s = std::sqrt(0.5);
+  const PlaneWall funnel({1.0, 0.0, 0.0}, {1.0, 0.0, 1.0});
+  expect_contact(funnel.nearest({2.0, 9.0, 1.0}), 2.0 * s, {s, 0.0, s});
+}
+
+TEST(ContainerAnalytic, CylinderPointsToItsAxis) {
+  const CylinderWall wall(1.0, 2.0, 5.0);
+  expect_contact(wall.nearest({4.0, 6.0, 9.0}), 0.0, {-0.6, -0.8, 0.0});
+  expect_contact(wall.nearest({1.0, 4.0, -3.0}), 3.0, {0.0, -1.0, 0.0});
+  expect_contact(wall.nearest({8.0, 2.0, 0.0}), -2.0, {-1.0, 0.0, 0.0});
+}
+
+TEST(ContainerAnalytic, CylinderHasAUnitNormalOnItsAxis) {
+  const WallContact contact = CylinderWall(1.0, 2.0, 5.0).nearest({1.0, 2.0, 0.0});
+  EXPECT_EQ(contact.distance, 5.0);
+  EXPECT_EQ(contact.normal.norm(), 1.0);
+}
+
+TEST(ContainerAnalytic, BasePlateBesideTheHoleIsAPlaneWithTwoSides) {
+  const BasePlate plate(orifice);
+  expect_contact(plate.nearest({5.0, 0.0, 0.5}), 0.5, {0.0, 0.0, 1.0});
+  expect_contact(plate.nearest({0.0, -6.0, -0.25}), 0.25, {0.0, 0.0, -1.0});
+}
+
+TEST(ContainerAnalytic, BasePlateOverTheHoleIsItsRim) {
+  const BasePlate plate(orifice);
+  expect_contact(plate.nearest({1.0, 0.0, 4.0}), 5.0, {-0.6, 0.0, 0.8});
+  expect_contact(plate.nearest({0.0, 3.7, 0.4}), 0.5, {0.0, -0.6, 0.8});
+  expect_contact(plate.nearest({0.0, -3.0, 0.0}), 1.0, {0.0, 1.0, 0.0});
+  expect_contact(plate.nearest({3.0, 0.0, -1.0}), std::sqrt(2.0), {-std::sqrt(0.5), 0.0, -std::sqrt(0.5)});
+}
+
+TEST(ContainerAnalytic, BasePlateNormalTurnsSteadilyAcrossTheEdge) {
+  const BasePlate plate(orifice);
+  for (const double height : {0.01, 0.3, -0.3}) {
+    const WallContact inside = plate.nearest({4.0 - 1e-9, 0.0, height});
+    const WallContact outside = plate.nearest({4.0 + 1e-9, 0.0, height});
+    EXPECT_NEAR(inside.distance, outside.distance, 1e-9);
+    EXPECT_LT((inside.normal - outside.normal).norm(), 1e-6);
+  }
+}
+
+/// The nearest point of every wall, found by looking at many of its points.
+TEST(ContainerBruteForce, BasePlateDistanceIsThatOfItsNearestPoint) {
+  const BasePlate plate(orifice);
+  scenes::Draws draws(5);
+  for (int k = 0; k < 200; ++k) {
+    const Vector3 centre = draws.in_box({-6.0, -6.0, -1.0}, {6.0, 6.0, 3.0});
+    const double angle = std::atan2(centre.y(), centre.x());
+    double least = infinity;
+    for (int a = -20; a <= 20; ++a)  // turns around the axis: the nearest point lies in the plane of axis and centre
+      for (double r = orifice.radius; r < 10.0; r += 1e-3) {
+        const double around = angle + 1e-2 * a;
+        least = std::min(least, (centre - Vector3(r * std::cos(around), r * std::sin(around), 0.0)).norm());
+      }
+    EXPECT_NEAR(plate.nearest(centre).distance, least, 2e-3);
+    EXPECT_NEAR(plate.nearest(centre).normal.norm(), 1.0, 1e-12);
+  }
+}
+
+/// Distance grows at rate one along the normal: both come from the same nearest point.
+TEST(ContainerAnalytic, DistanceGrowsAlongTheNormal) {
+  const PlaneWall plane({0.3, 0.2, 0.1}, {1.0, 2.0, 3.0});
+  const CylinderWall cylinder(0.5, -0.5, 9.0);
+  const BasePlate plate(orifice);
+  scenes::Draws draws(6);
+  for (int k = 0; k < 1000; ++k) {
+    const Vector3 centre = draws.in_box({-6.0, -6.0, 0.1}, {6.0, 6.0, 5.0});
+    for (const spot::Wall* wall : {static_cast<const spot::Wall*>(&plane), static_cast<const spot::Wall*>(&cylinder),
+                                   static_cast<const spot::Wall*>(&plate)}) {
+      const WallContact here = wall->nearest(centre);
+      if (std::abs(here.distance) < 1e-3) continue;
+      { EXPECT_NEAR(wall->nearest(centre + 1e-6 * here.normal).distance - here.distance, 1e-6, 1e-9); }
+    }
+  }
+}
+
+TEST(ContainerAnalytic, PlaneReflectsSpotsAtTheirBuffer) {
+  const PlaneWall wall({0.0, -4.0, 0.0}, {0.0, 1.0, 0.0});
+  EXPECT_EQ(wall.reflect_spot(1.0, {5.0, -3.0, 2.0}), Vector3(5.0, -3.0, 2.0)) << "on the surface";
+  EXPECT_EQ(wall.reflect_spot(1.0, {5.0, -3.25, 2.0}), Vector3(5.0, -2.75, 2.0));
+  EXPECT_EQ(wall.reflect_spot(1.0, {5.0, 2.0, 2.0}), Vector3(5.0, 2.0, 2.0)) << "far away";
+}
+
+TEST(ContainerAnalytic, OrificeKeepsWithinByReflection) {
+  const Orifice shifted{{1.0, 2.0, 3.0}, 4.0};
+  EXPECT_EQ(shifted.keep_within(1.5, {2.0, 2.0, 9.0}), Vector3(2.0, 2.0, 9.0));
+  EXPECT_LT((shifted.keep_within(1.5, {3.0, 2.0, 9.0}) - Vector3(2.0, 2.0, 9.0)).norm(), 1e-14);
+  EXPECT_LT((shifted.keep_within(1.5, {9.0, 2.0, 9.0}) - Vector3(1.0, 2.0, 9.0)).norm(), 1e-14)
+      << "never past the axis";
+}
+
+TEST(ContainerAnalytic, BasePlateKeepsRisingSpotsAwayFromTheRimAtConstantHeight) {
+  const BasePlate plate(orifice);
+  scenes::Draws draws(7);
+  for (int k = 0; k < 10000; ++k) {
+    const Vector3 target = draws.in_box({-3.0, -3.0, -2.6}, {3.0, 3.0, 4.0});
+    const Vector3 kept = plate.reflect_spot(2.6, target);
+    EXPECT_EQ(kept.z(), target.z());
+    if (kept.z() <= 0.0) {
+      EXPECT_LE(kept.head<2>().norm(), 1.4 + 1e-12);
+    } else {
+      EXPECT_GE(plate.nearest(kept).distance, 2.6 - 1e-12);
+    }
+    if (target.head<2>().norm() <= 1.4 || (target.z() > 0.0 && plate.nearest(target).distance >= 2.6)) {
+      EXPECT_LT((kept - target).norm(), 1e-12) << "far enough already";
+    }
+  }
+  EXPECT_EQ(plate.reflect_spot(2.6, {3.9, 0.0, 2.6}), Vector3(3.9, 0.0, 2.6)) << "at its buffer above the base";
+}
+
+TEST(ContainerAnalytic, SpotsStayAtTheirBufferInsideTheBox) {
+  const auto silo = box_silo(-8.0, 8.0, -4.0, 4.0, orifice, buffers);
+  scenes::Draws draws(8);
+  for (int k = 0; k < 10000; ++k) {
+    const Vector3 kept = silo->keep_spot_inside({0.0, 0.0, 10.0}, draws.in_box({-8.5, -4.5, 3.0}, {8.5, 4.5, 20.0}));
+    EXPECT_LE(std::abs(kept.x()), 7.0 + 1e-12);
+    EXPECT_LE(std::abs(kept.y()), 3.0 + 1e-12);
+  }
+}
+
+TEST(ContainerAnalytic, SpotsStayAtTheirBufferInsideTheCylinder) {
+  const auto silo = cylinder_silo(1.0, -1.0, 8.0, Orifice{{1.0, -1.0, 0.0}, 4.0}, buffers);
+  scenes::Draws draws(9);
+  for (int k = 0; k < 10000; ++k) {
+    const Vector3 kept = silo->keep_spot_inside({1.0, -1.0, 10.0}, draws.in_box({-7.0, -9.0, 3.0}, {9.0, 7.0, 20.0}));
+    EXPECT_LE(std::hypot(kept.x() - 1.0, kept.y() + 1.0), 7.0 + 1e-12);
+  }
+}
+
+/// A step of 0.68 across a gap of 0.2 is folded back several times.
+TEST(ContainerAnalytic, SpotsStayInsideANarrowGap) {
+  const auto silo = box_silo(-8.0, 8.0, -4.0, 4.0, orifice, SpotBuffers{3.9, 2.6});
+  for (double y = -0.78; y <= 0.78; y += 0.01) {
+    const Vector3 kept = silo->keep_spot_inside({0.0, 0.0, 9.9}, {0.0, y, 10.0});
+    EXPECT_LE(std::abs(kept.y()), 0.1 + 1e-12) << y;
+  }
+}
+
+TEST(ContainerUnit, ContainsIsTheInnerSideOfEveryWall) {
+  const auto silo = box_silo(-8.0, 8.0, -4.0, 4.0, orifice, buffers);
+  EXPECT_TRUE(silo->contains({7.9, -3.9, 0.1}));
+  EXPECT_TRUE(silo->contains({0.0, 0.0, 1000.0})) << "there is no lid";
+  EXPECT_FALSE(silo->contains({8.1, 0.0, 1.0}));
+  EXPECT_FALSE(silo->contains({0.0, -4.1, 1.0}));
+  EXPECT_FALSE(silo->contains({6.0, 0.0, -0.1}));
+  EXPECT_FALSE(silo->contains({0.0, 0.0, -0.1})) << "below the orifice";
+  EXPECT_FALSE(silo->contains({std::nan(""), 0.0, 1.0}));
+  const auto round = cylinder_silo(0.0, 0.0, 8.0, orifice, buffers);
+  EXPECT_TRUE(round->contains({5.6, 5.6, 0.1}));
+  EXPECT_FALSE(round->contains({5.7, 5.7, 0.1}));
+}
+
+TEST(ContainerUnit, ContactsAreTheWallsWithinReach) {
+  const auto silo = box_silo(-8.0, 8.0, -4.0, 4.0, orifice, buffers);
+  WallContacts contacts;
+  const auto count = [&](const Vector3& centre, double reach) {
+    silo->contacts(centre, reach, contacts);
+    return contacts.end() - contacts.begin();
+  };
+  EXPECT_EQ(count({0.0, 0.0, 10.0}, 0.5), 0);
+  EXPECT_EQ(count({7.6, 0.0, 10.0}, 0.5), 1);
+  EXPECT_NEAR(contacts.begin()->distance, 0.4, 1e-14);
+  EXPECT_EQ(count({7.6, 3.7, 0.3}, 0.5), 3) << "a corner";
+  EXPECT_EQ(count({0.0, 0.0, 10.0}, 100.0), 5) << "earlier contacts are cleared";
+}
+
+TEST(ContainerUnit, TooManyWallsAtOneGrainAreAnError) {
+  WalledContainer container(orifice);
+  for (int i = 0; i <= WallContacts::capacity; ++i)
+    container.add(std::make_unique<PlaneWall>(Vector3(0.0, 0.0, 0.0), Vector3(1.0, 0.1 * i, 0.0)), 0.0);
+  WallContacts contacts;
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([&] {
+                container.contacts({0.0, 0.0, 0.0}, 0.5, contacts);
+              }),
+              HasSubstr("8 walls"));
+}
+
+TEST(ContainerUnit, WallsInTheWrongOrderAreNamed) {
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([] { box_silo(8.0, -8.0, -4.0, 4.0, orifice, buffers); }),
+              AllOf(HasSubstr("along x"), HasSubstr("8 and -8"), HasSubstr("increasing")));
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([] { box_silo(-8.0, 8.0, 4.0, 4.0, orifice, buffers); }),
+              AllOf(HasSubstr("along y"), HasSubstr("increasing")));
+  EXPECT_THROW(box_silo(-8.0, infinity, -4.0, 4.0, orifice, buffers), InvalidContainer);
+  EXPECT_THROW(box_silo(std::nan(""), 8.0, -4.0, 4.0, orifice, buffers), InvalidContainer);
+}
+
+TEST(ContainerUnit, OrificeWiderThanTheBaseIsNamed) {
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([] { box_silo(-8.0, 8.0, -3.9, 4.0, orifice, buffers); }),
+              AllOf(HasSubstr("orifice of radius 4"), HasSubstr("wider than the base"), HasSubstr("-3.9")));
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([] {
+                cylinder_silo(0.0, 0.0, 5.0, Orifice{{2.0, 0.0, 0.0}, 4.0}, buffers);
+              }),
+              AllOf(HasSubstr("reaches 6"), HasSubstr("radius 5")));
+  EXPECT_NO_THROW(box_silo(-8.0, 8.0, -4.0, 4.0, orifice, buffers)) << "exactly as wide is allowed";
+  EXPECT_NO_THROW(cylinder_silo(0.0, 0.0, 4.0, orifice, buffers));
+}
+
+TEST(ContainerUnit, BadShapesAreNamed) {
+  for (const double bad : {0.0, -1.0, infinity, std::nan("")}) {
+    EXPECT_THAT(scenes::text_of<InvalidContainer>([&] { CylinderWall(0.0, 0.0, bad); }),
+                AllOf(HasSubstr("cylinder radius"), HasSubstr("positive and finite")));
+    EXPECT_THAT(scenes::text_of<InvalidContainer>([&] {
+                  WalledContainer(Orifice{{0.0, 0.0, 0.0}, bad});
+                }),
+                AllOf(HasSubstr("orifice radius"), HasSubstr("positive and finite")));
+  }
+  EXPECT_THROW(PlaneWall({0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}), InvalidContainer);
+  EXPECT_THROW(PlaneWall({0.0, 0.0, std::nan("")}, {0.0, 0.0, 1.0}), InvalidContainer);
+  EXPECT_THROW(PlaneWall({0.0, 0.0, 0.0}, {0.0, 0.0, infinity}), InvalidContainer);
+}
+
+TEST(ContainerUnit, BuffersThatLeaveNoRoomAreNamed) {
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([] {
+                box_silo(-8.0, 8.0, -4.0, 4.0, orifice, SpotBuffers{4.5, 2.6});
+              }),
+              AllOf(HasSubstr("along y"), HasSubstr("4.5"), HasSubstr("at least 9")));
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([] {
+                cylinder_silo(0.0, 0.0, 5.0, orifice, SpotBuffers{5.5, 2.6});
+              }),
+              AllOf(HasSubstr("radius is 5"), HasSubstr("5.5")));
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([] {
+                box_silo(-8.0, 8.0, -4.0, 4.0, orifice, SpotBuffers{-1.0, 2.6});
+              }),
+              AllOf(HasSubstr("buffer is -1"), HasSubstr("zero or positive")));
+}
+
+TEST(ContainerUnit, OrificeNarrowerThanTheSpotsIsNamed) {
+  const auto silo = box_silo(-8.0, 8.0, -4.0, 4.0, Orifice{{0.0, 0.0, 0.0}, 2.5}, buffers);
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([&] { silo->require_entrance(2.6); }),
+              AllOf(HasSubstr("orifice radius is 2.5"), HasSubstr("2.6")));
+  EXPECT_NO_THROW(silo->require_entrance(2.5));
+}
+
+}  // namespace

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/parameters.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "scenes.hpp"
+
+namespace {
+
+using spot::InvalidParameter;
+using spot::RelaxationParameters;
+using spot::RelaxationStrength;
+using spot::SpotParameters;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const double infinity = std::numeric_limits<double>::infinity();
+
+struct Number {
+  std::string word;
+  double SpotParameters::*member;
+};
+
+class SpotParametersUnit : public testing::TestWithParam<Number> {};
+
+TEST_P(SpotParametersUnit, OutOfRangeNamesTheWordAndTheBound) {
+  for (const double bad : {0.0, -1.5, infinity, -infinity, std::nan("")}) {
+    SpotParameters spots = scenes::paper_spots();
+    spots.*GetParam().member = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }),
+                AllOf(HasSubstr(GetParam().word + " is "), HasSubstr("must be positive and finite")));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EachNumber, SpotParametersUnit,
+                         testing::Values(Number{"spot radius", &SpotParameters::radius},
+                                         Number{"spot influence", &SpotParameters::influence},
+                                         Number{"spot step width", &SpotParameters::step_width},
+                                         Number{"spot step height", &SpotParameters::step_height},
+                                         Number{"spot speed", &SpotParameters::speed},
+                                         Number{"spot injection rate", &SpotParameters::injection_rate}),
+                         [](const auto& number) {
+                           std::string name = number.param.word;
+                           name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+                           return name;
+                         });
+
+TEST(ParametersUnit, ThoseOf2006AreValid) {
+  EXPECT_NO_THROW(scenes::paper_spots().validate());
+  EXPECT_NO_THROW(RelaxationParameters().validate());
+}
+
+TEST(ParametersUnit, DefaultsMustBeFilledIn) { EXPECT_THROW(SpotParameters().validate(), InvalidParameter); }
+
+TEST(ParametersUnit, InfluenceMustBeBelowOne) {
+  SpotParameters spots = scenes::paper_spots();
+  spots.influence = 1.0;
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }),
+              AllOf(HasSubstr("spot influence is 1 "), HasSubstr("below 1")));
+  spots.influence = 0.999;
+  EXPECT_NO_THROW(spots.validate());
+}
+
+TEST(ParametersUnit, DiffusionLengthOf2006) {
+  SpotParameters spots = scenes::paper_spots();
+  EXPECT_NEAR(spots.diffusion_length(), 1.156, 1e-12);
+  spots.step_width = 0.675;
+  EXPECT_NEAR(spots.diffusion_length(), 1.14, 1e-3);
+}
+
+TEST(ParametersUnit, StepWidthInvertsTheDiffusionLength) {
+  for (const double height : {0.025, 0.1, 0.3}) {
+    SpotParameters spots = scenes::paper_spots();
+    spots.step_height = height;
+    spots.step_width = spot::step_width_for(1.156, height);
+    EXPECT_NEAR(spots.diffusion_length(), 1.156, 1e-14);
+  }
+  EXPECT_NEAR(spot::step_width_for(1.156, 0.1), 0.68, 1e-12);
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([] { spot::step_width_for(-1.0, 0.1); }),
+              AllOf(HasSubstr("diffusion length"), HasSubstr("positive")));
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([] { spot::step_width_for(1.0, 0.0); }),
+              AllOf(HasSubstr("step height"), HasSubstr("positive")));
+}
+
+/// 81.7 grains in a spot at a packing fraction of 0.579, and a spot that carries 0.205 grain volumes (2006).
+TEST(ParametersUnit, SpotVolumeOf2006) {
+  const double grain_volume = scenes::pi / 6.0;
+  const double in_grains = scenes::paper_spots().spot_volume(0.579) / grain_volume;
+  EXPECT_NEAR(in_grains, 0.205, 2e-3);
+  EXPECT_NEAR(in_grains / scenes::paper_spots().influence, 81.7, 0.5);
+}
+
+TEST(ParametersUnit, MoveRateCarriesTheSpeed) {
+  SpotParameters spots = scenes::paper_spots();
+  EXPECT_DOUBLE_EQ(spots.move_rate(), 32.0);
+  spots.step_height = 0.05;
+  EXPECT_DOUBLE_EQ(spots.move_rate(), 64.0);
+}
+
+TEST(ParametersUnit, RelaxationDefaultsAreThoseOf2010) {
+  const RelaxationParameters relaxation;
+  EXPECT_EQ(relaxation.alpha, 0.8);
+  EXPECT_EQ(relaxation.strength, RelaxationStrength::half_each);
+  EXPECT_EQ(relaxation.shell, 1.0);
+  EXPECT_EQ(relaxation.every, 1);
+}
+
+TEST(ParametersUnit, RelaxationShares) {
+  RelaxationParameters relaxation;
+  EXPECT_DOUBLE_EQ(relaxation.pair_share(), 0.4);
+  EXPECT_DOUBLE_EQ(relaxation.fixed_share(), 0.8);
+  relaxation.strength = RelaxationStrength::full_each;
+  EXPECT_DOUBLE_EQ(relaxation.pair_share(), 0.8);
+  EXPECT_DOUBLE_EQ(relaxation.fixed_share(), 0.8);
+}
+
+TEST(ParametersUnit, RelaxationOutOfRangeNamesTheWordAndTheBound) {
+  for (const double bad : {0.0, -0.1, infinity, std::nan("")}) {
+    RelaxationParameters relaxation;
+    relaxation.alpha = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { relaxation.validate(); }),
+                AllOf(HasSubstr("relaxation alpha is "), HasSubstr("positive")));
+  }
+  RelaxationParameters strong;
+  strong.alpha = 2.0;
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { strong.validate(); }),
+              AllOf(HasSubstr("relaxation alpha is 2 "), HasSubstr("below 2")));
+  for (const double bad : {-0.1, infinity, std::nan("")}) {
+    RelaxationParameters relaxation;
+    relaxation.shell = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { relaxation.validate(); }),
+                AllOf(HasSubstr("relaxation shell is "), HasSubstr("zero or positive")));
+  }
+  RelaxationParameters rare;
+  rare.every = -1;
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { rare.validate(); }),
+              AllOf(HasSubstr("relaxation interval is -1 "), HasSubstr("zero")));
+  rare.every = 0;
+  rare.shell = 0.0;
+  EXPECT_NO_THROW(rare.validate());
+}
+
+}  // namespace

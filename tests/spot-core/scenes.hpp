@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Packings, containers and small tools that several tests use. Lengths in grain diameters unless said otherwise.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "spot/container.hpp"
+#include "spot/errors.hpp"
+#include "spot/packing.hpp"
+#include "spot/parameters.hpp"
+
+namespace scenes {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Random numbers for the tests themselves, the same on every platform.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  std::size_t below(std::size_t n) { return static_cast<std::size_t>(engine_() % n); }
+  spot::Vector3 in_box(const spot::Vector3& low, const spot::Vector3& high) {
+    const double x = uniform(low.x(), high.x()), y = uniform(low.y(), high.y()), z = uniform(low.z(), high.z());
+    return {x, y, z};
+  }
+  template <typename T>
+  void shuffle(std::vector<T>& values) {
+    for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Random sequential addition: up to n grains, no two centres closer than `least_distance`. Ids are shuffled, so
+/// that they say nothing about the order of the grains.
+inline std::vector<spot::Grain> random_grains(std::size_t n, const spot::Vector3& low, const spot::Vector3& high,
+                                              double least_distance, std::uint64_t seed) {
+  Draws draws(seed);
+  std::vector<spot::Grain> grains;
+  for (std::size_t attempt = 0; attempt < 200 * n && grains.size() < n; ++attempt) {
+    const spot::Vector3 centre = draws.in_box(low, high);
+    const bool free = std::none_of(grains.begin(), grains.end(), [&](const spot::Grain& other) {
+      return (other.position - centre).squaredNorm() < least_distance * least_distance;
+    });
+    if (free) grains.push_back({0, centre});
+  }
+  std::vector<std::int64_t> ids(grains.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::int64_t>(10 + 3 * i);
+  draws.shuffle(ids);
+  for (std::size_t i = 0; i < ids.size(); ++i) grains[i].id = ids[i];
+  return grains;
+}
+
+/// A body-centred lattice with the packing fraction of dense flow, about 0.58, stretched to fill the box of centres
+/// from wall to wall, every centre displaced at random by up to `jitter` along each axis. For jitters up to 0.01 no two
+/// grains touch in the boxes of these tests.
+inline std::vector<spot::Grain> dense_grains(const spot::Vector3& low, const spot::Vector3& high, double jitter,
+                                             std::uint64_t seed) {
+  Draws draws(seed);
+  int layers[3];
+  spot::Vector3 spacing;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = high[axis] - low[axis];
+    layers[axis] = static_cast<int>(std::lround(length / 0.609));
+    spacing[axis] = length / layers[axis];
+  }
+  std::vector<spot::Grain> grains;
+  for (int iz = 0; iz <= layers[2]; ++iz)
+    for (int iy = iz % 2; iy <= layers[1]; iy += 2)
+      for (int ix = iz % 2; ix <= layers[0]; ix += 2) {
+        const spot::Vector3 site = low + spot::Vector3(ix * spacing.x(), iy * spacing.y(), iz * spacing.z());
+        const spot::Vector3 shift = draws.in_box(spot::Vector3::Constant(-jitter), spot::Vector3::Constant(jitter));
+        grains.push_back({static_cast<std::int64_t>(grains.size()) + 1, (site + shift).cwiseMax(low).cwiseMin(high)});
+      }
+  return grains;
+}
+
+/// The parameters of 2006 with the drift speed and injection rate of the project's own DEM run, in d and tau.
+inline spot::SpotParameters paper_spots() {
+  spot::SpotParameters spots;
+  spots.radius = 2.6;
+  spots.influence = 2.5e-3;
+  spots.step_width = 0.68;
+  spots.step_height = 0.1;
+  spots.speed = 3.2;
+  spots.injection_rate = 363.0;
+  spots.seed = 2006;
+  return spots;
+}
+
+/// No walls at all; the orifice far below.
+inline std::unique_ptr<spot::WalledContainer> empty_space() {
+  return std::make_unique<spot::WalledContainer>(spot::Orifice{{0.0, 0.0, -1000.0}, 4.0});
+}
+
+/// A silo around the origin that spots of 2006 can drain: orifice of radius 4 in the base at z = 0.
+inline std::shared_ptr<const spot::Container> small_silo(double half_width, double half_depth) {
+  return spot::box_silo(-half_width, half_width, -half_depth, half_depth, spot::Orifice{{0.0, 0.0, 0.0}, 4.0},
+                        spot::SpotBuffers{1.0, 2.6});
+}
+
+/// The index of the grain with this id; indices change whenever the packing is refreshed.
+inline std::uint32_t index_of(const spot::Packing& packing, std::int64_t id) {
+  for (std::uint32_t i = 0; i < packing.slots(); ++i)
+    if (packing.present(i) && packing.id(i) == id) return i;
+  ADD_FAILURE() << "no grain has id " << id;
+  return 0;
+}
+
+inline std::vector<std::uint32_t> all_movable(const spot::Packing& packing) {
+  std::vector<std::uint32_t> movable;
+  for (std::uint32_t i = 0; i < packing.slots(); ++i)
+    if (packing.present(i) && !packing.held(i)) movable.push_back(i);
+  return movable;
+}
+
+/// Expects the same ids at the same places, to the last bit.
+inline void expect_identical(const std::vector<spot::Grain>& a, const std::vector<spot::Grain>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].id, b[i].id);
+    for (int axis = 0; axis < 3; ++axis)
+      ASSERT_EQ(a[i].position[axis], b[i].position[axis]) << "grain " << a[i].id << ", axis " << axis;
+  }
+}
+
+/// The text of the exception that `act` must throw.
+template <typename Exception, typename Act>
+std::string text_of(Act&& act) {
+  try {
+    act();
+  } catch (const Exception& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return "";
+}
+
+/// How far a chi-square sum lies above its mean, in standard deviations of a normal variable (Wilson and Hilferty).
+inline double chi_square_deviation(double sum, double degrees) {
+  const double variance = 2.0 / (9.0 * degrees);
+  return (std::cbrt(sum / degrees) - (1.0 - variance)) / std::sqrt(variance);
+}
+
+/// The same for counts that should be equal.
+inline double deviation_from_equal_counts(const std::vector<int>& counts) {
+  double total = 0.0;
+  for (const int count : counts) total += count;
+  const double expected = total / static_cast<double>(counts.size());
+  double sum = 0.0;
+  for (const int count : counts) sum += (count - expected) * (count - expected) / expected;
+  return chi_square_deviation(sum, static_cast<double>(counts.size()) - 1.0);
+}
+
+/// Bound of the statistical tests, in standard deviations: a correct program passes with all but one seed in 15,000
+/// (two-sided; one in 30,000 for chi-square sums). Seeds are fixed, so a test that has passed once goes on passing.
+constexpr double bound = 4.0;
+
+}  // namespace scenes

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/spot_population.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "scenes.hpp"
+
+namespace {
+
+using scenes::bound;
+using spot::Container;
+using spot::Move;
+using spot::Orifice;
+using spot::Spot;
+using spot::SpotParameters;
+using spot::SpotPopulation;
+using spot::Vector3;
+
+const Orifice orifice{{0.5, -0.25, 2.0}, 4.0};
+
+std::unique_ptr<spot::WalledContainer> space_above_orifice() {
+  return std::make_unique<spot::WalledContainer>(orifice);
+}
+
+/// Where a spot was before its move.
+Vector3 start_of(const Move& move) { return move.middle - 0.5 * move.step; }
+Vector3 end_of(const Move& move) { return move.middle + 0.5 * move.step; }
+
+/// Lets `number` spots take `steps` steps each, and calls visit(move, steps taken) after each of them.
+template <typename Visit>
+void walk(const SpotParameters& parameters, const Container& container, int number, int steps, Visit&& visit) {
+  SpotPopulation population(parameters, container);
+  std::map<std::int64_t, int> taken;
+  int done = 0;
+  while (done < number) {
+    const auto move = population.next_move(1e9, container);
+    const int n = ++taken[move->spot];
+    if (move->spot < number) visit(*move, n);
+    if (n < steps) continue;
+    population.remove_last_moved();
+    taken.erase(move->spot);
+    if (move->spot < number) ++done;
+  }
+}
+
+TEST(SpotPopulationUnit, StepsAreThoseOf2006) {
+  const auto space = space_above_orifice();
+  std::set<std::pair<double, double>> seen;
+  walk(scenes::paper_spots(), *space, 100, 20, [&](const Move& move, int) {
+    EXPECT_NEAR(move.step.z(), 0.1, 1e-12);
+    const double along = std::abs(move.step.x()) + std::abs(move.step.y());
+    EXPECT_NEAR(along, 0.68, 1e-12);
+    EXPECT_NEAR(std::min(std::abs(move.step.x()), std::abs(move.step.y())), 0.0, 1e-12) << "diagonals spread too fast";
+    seen.emplace(std::round(10.0 * move.step.x()), std::round(10.0 * move.step.y()));
+  });
+  EXPECT_EQ(seen.size(), 4u);
+}
+
+TEST(SpotPopulationUnit, MovesComeInOrderOfTimeAndUpToTheGivenTime) {
+  const auto space = space_above_orifice();
+  SpotPopulation population(scenes::paper_spots(), *space);
+  double last = 0.0;
+  for (const double until : {0.0, 0.1, 0.1, 0.35, 0.5})
+    while (const auto move = population.next_move(until, *space)) {
+      EXPECT_GE(move->time, last);
+      EXPECT_LE(move->time, until);
+      last = move->time;
+    }
+  EXPECT_GT(last, 0.49);
+}
+
+TEST(SpotPopulationUnit, EachMoveStartsWhereTheSpotsLastEnded) {
+  const auto space = space_above_orifice();
+  SpotPopulation population(scenes::paper_spots(), *space);
+  std::map<std::int64_t, Vector3> at;
+  while (const auto move = population.next_move(1.0, *space)) {
+    if (at.count(move->spot)) {
+      EXPECT_LT((at[move->spot] - start_of(*move)).norm(), 1e-12);
+    }
+    at[move->spot] = end_of(*move);
+  }
+  ASSERT_GE(population.spots().size(), at.size());
+  for (const Spot& spot : population.spots())
+    if (spot.steps > 0) {
+      EXPECT_LT((spot.position - at.at(spot.id)).norm(), 1e-12);
+    }
+}
+
+TEST(SpotPopulationUnit, RemovedSpotsStepNoMore) {
+  const auto space = space_above_orifice();
+  SpotPopulation population(scenes::paper_spots(), *space);
+  std::set<std::int64_t> removed;
+  while (const auto move = population.next_move(1.0, *space)) {
+    EXPECT_EQ(removed.count(move->spot), 0u);
+    if (move->spot % 3 != 0) continue;
+    population.remove_last_moved();
+    removed.insert(move->spot);
+  }
+  EXPECT_GT(removed.size(), 50u);
+  EXPECT_EQ(population.spots().size() + removed.size(), static_cast<std::size_t>(population.born()));
+}
+
+TEST(SpotPopulationUnit, RefusesBadParametersAndNarrowOrifices) {
+  const auto space = space_above_orifice();
+  EXPECT_THROW(SpotPopulation(SpotParameters(), *space), spot::InvalidParameter);
+  SpotParameters wide = scenes::paper_spots();
+  wide.radius = 4.1;
+  EXPECT_THROW(SpotPopulation(wide, *space), spot::InvalidContainer);
+}
+
+/// Id, birth and walk of a spot depend on the seed and its id alone: neither on what time is asked for nor on the
+/// fate of other spots.
+TEST(SpotPopulationInvariance, WalksDependOnSeedAndIdAlone) {
+  const auto space = space_above_orifice();
+  const auto record = [&](std::uint64_t seed, double piece, bool remove_odd) {
+    SpotParameters parameters = scenes::paper_spots();
+    parameters.seed = seed;
+    SpotPopulation population(parameters, *space);
+    std::map<std::int64_t, std::vector<double>> walks;
+    for (double until = piece; until <= 1.0; until += piece)
+      while (const auto move = population.next_move(until, *space)) {
+        if (move->spot % 2 == 0)
+          walks[move->spot].insert(walks[move->spot].end(), {move->time, move->middle.x(), move->middle.y()});
+        else if (remove_odd)
+          population.remove_last_moved();
+      }
+    return walks;
+  };
+  const auto walks = record(1, 1.0, false);
+  EXPECT_EQ(record(1, 1.0, false), walks) << "rerun";
+  EXPECT_EQ(record(1, 1.0 / 64.0, false), walks) << "in pieces";
+  EXPECT_EQ(record(1, 1.0, true), walks) << "others removed";
+  EXPECT_NE(record(2, 1.0, false), walks) << "another seed";
+}
+
+TEST(SpotPopulationAnalytic, SpotsAreBornBelowTheOrificeInsideItsDisc) {
+  const auto space = space_above_orifice();
+  walk(scenes::paper_spots(), *space, 2000, 1, [&](const Move& move, int) {
+    const Vector3 birth = start_of(move) - orifice.centre;
+    EXPECT_NEAR(birth.z(), -2.6, 1e-12);
+    EXPECT_LE(std::hypot(birth.x(), birth.y()), 1.4 + 1e-12);
+  });
+}
+
+TEST(SpotPopulationAnalytic, AnOrificeAsWideAsTheSpotsBearsThemOnItsAxis) {
+  const spot::WalledContainer space(Orifice{{0.0, 0.0, 0.0}, 2.6});
+  walk(scenes::paper_spots(), space, 100, 1,
+       [&](const Move& move, int) { EXPECT_NEAR(start_of(move).head<2>().norm(), 0.0, 1e-12); });
+}
+
+TEST(SpotPopulationStatistical, BirthsAreUniformOnTheDisc) {
+  const auto space = space_above_orifice();
+  std::vector<int> rings(20), sectors(20);
+  walk(scenes::paper_spots(), *space, 20000, 1, [&](const Move& move, int) {
+    const Vector3 birth = start_of(move) - orifice.centre;
+    const double area = birth.head<2>().squaredNorm() / (1.4 * 1.4);
+    const double turn = std::atan2(birth.y(), birth.x()) / (2.0 * scenes::pi) + 0.5;
+    ++rings[std::min<std::size_t>(19, static_cast<std::size_t>(20.0 * area))];
+    ++sectors[std::min<std::size_t>(19, static_cast<std::size_t>(20.0 * turn))];
+  });
+  EXPECT_LT(scenes::deviation_from_equal_counts(rings), bound);
+  EXPECT_LT(scenes::deviation_from_equal_counts(sectors), bound);
+}
+
+TEST(SpotPopulationStatistical, BirthsAreAPoissonProcess) {
+  const auto space = space_above_orifice();
+  const SpotParameters parameters = scenes::paper_spots();
+  SpotPopulation population(parameters, *space);
+  const int intervals = 4000;
+  const double length = 10.0 / parameters.injection_rate;  // ten births expected in each
+  double sum = 0.0, sum_of_squares = 0.0;
+  std::int64_t before = 0;
+  for (int k = 1; k <= intervals; ++k) {
+    while (population.next_move(k * length, *space)) population.remove_last_moved();
+    const double births = static_cast<double>(population.born() - before);
+    before = population.born();
+    sum += births;
+    sum_of_squares += births * births;
+  }
+  const double mean = sum / intervals;
+  EXPECT_LT(std::abs(mean - 10.0) / std::sqrt(10.0 / intervals), bound);
+  // Variance over mean is one: (n - 1) variance / mean follows chi-square.
+  const double dispersion = (sum_of_squares - sum * mean) / mean;
+  EXPECT_LT(std::abs(scenes::chi_square_deviation(dispersion, intervals - 1)), bound);
+}
+
+TEST(SpotPopulationStatistical, WaitingTimesAreExponentialAndGiveTheDriftSpeed) {
+  const auto space = space_above_orifice();
+  const SpotParameters parameters = scenes::paper_spots();
+  std::map<std::int64_t, double> last;
+  std::vector<int> counts(50);
+  double total = 0.0;
+  int waits = 0;
+  walk(parameters, *space, 1000, 101, [&](const Move& move, int n) {
+    if (n > 1) {
+      const double wait = move.time - last[move.spot];
+      total += wait;
+      ++waits;
+      const double below = 1.0 - std::exp(-parameters.move_rate() * wait);
+      ++counts[std::min<std::size_t>(49, static_cast<std::size_t>(50.0 * below))];
+    }
+    last[move.spot] = move.time;
+  });
+  ASSERT_EQ(waits, 100000);
+  EXPECT_LT(scenes::deviation_from_equal_counts(counts), bound);
+  const double speed = waits * parameters.step_height / total;
+  EXPECT_LT(std::abs(speed / parameters.speed - 1.0) * std::sqrt(waits), bound) << "v_s = " << speed;
+}
+
+/// The four directions are equally frequent and successive ones independent: Var(x) = 2 b z along both axes.
+TEST(SpotPopulationStatistical, FreeSpotsDiffuse) {
+  const auto space = space_above_orifice();
+  const SpotParameters parameters = scenes::paper_spots();
+  const int number = 4000, steps = 64;
+  std::map<std::int64_t, Vector3> birth;
+  std::vector<int> directions(4);
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+  walk(parameters, *space, number, steps, [&](const Move& move, int n) {
+    if (n == 1) birth[move.spot] = start_of(move);
+    ++directions[(std::abs(move.step.x()) > std::abs(move.step.y()) ? 0 : 2) + (move.step.x() + move.step.y() > 0)];
+    if (n < steps) return;
+    const Vector3 path = end_of(move) - birth[move.spot];
+    xx += path.x() * path.x();
+    yy += path.y() * path.y();
+    xy += path.x() * path.y();
+  });
+  EXPECT_LT(scenes::deviation_from_equal_counts(directions), bound);
+  const double variance = 2.0 * parameters.diffusion_length() * steps * parameters.step_height;
+  // The mean square of n nearly normal numbers has a relative standard error of sqrt(2 / n).
+  EXPECT_LT(std::abs(xx / number / variance - 1.0) / std::sqrt(2.0 / number), bound) << xx / number / variance;
+  EXPECT_LT(std::abs(yy / number / variance - 1.0) / std::sqrt(2.0 / number), bound) << yy / number / variance;
+  EXPECT_LT(std::abs(xy / number / variance) * std::sqrt(number), bound);
+}
+
+/// Part of the sphere of radius R around a spot that lies between plane walls at y = +-wall.
+double uncut_part(double y, double wall, double radius) {
+  double cut = 0.0;
+  for (const double to_wall : {wall - y, wall + y}) {
+    const double cap = std::max(0.0, radius - to_wall);
+    cut += scenes::pi * cap * cap * (3.0 * radius - cap) / 3.0;
+  }
+  return 1.0 - cut / (4.0 / 3.0 * scenes::pi * radius * radius * radius);
+}
+
+/// Between walls 8 d apart: spots that keep one diameter from them spread evenly, and the walls leave them 0.957 of
+/// their sphere on average.
+TEST(SpotPopulationStatistical, SpotsStayUniformBetweenPlaneWalls) {
+  const auto silo = scenes::small_silo(25.0, 4.0);
+  const int number = 3000, steps = 326;  // 30 d above the orifice, ten times what evening out takes
+  std::vector<int> layers(12);
+  double sum = 0.0, sum_of_squares = 0.0;
+  walk(scenes::paper_spots(), *silo, number, steps, [&](const Move& move, int n) {
+    const Vector3 end = end_of(move);
+    ASSERT_LE(std::abs(end.y()), 3.0 + 1e-12);
+    ASSERT_LE(std::abs(end.x()), 24.0 + 1e-12);
+    if (n < steps) return;
+    ++layers[std::min<std::size_t>(11, static_cast<std::size_t>(2.0 * (end.y() + 3.0)))];
+    const double part = uncut_part(end.y(), 4.0, 2.6);
+    sum += part;
+    sum_of_squares += part * part;
+  });
+  EXPECT_LT(scenes::deviation_from_equal_counts(layers), bound);
+  const double mean = sum / number;
+  const double error = std::sqrt((sum_of_squares / number - mean * mean) / number);
+  EXPECT_LT(std::abs(mean - 0.9573) / error, bound) << mean;
+  EXPECT_LT(error, 0.002);
+}
+
+TEST(SpotPopulationAnalytic, RisingSpotsKeepTheirRadiusFromBaseAndRim) {
+  const auto silo = scenes::small_silo(8.0, 4.0);
+  const spot::BasePlate plate(silo->orifice());
+  walk(scenes::paper_spots(), *silo, 500, 80, [&](const Move& move, int) {
+    const Vector3 end = end_of(move);
+    if (end.z() <= 0.0) {
+      EXPECT_LE(end.head<2>().norm(), 1.4 + 1e-12);
+    } else {
+      EXPECT_GE(plate.nearest(end).distance, 2.6 - 1e-12);
+    }
+  });
+}
+
+}  // namespace
