@@ -23,9 +23,9 @@ RegionContainer::RegionContainer(Region *region, const spot::Orifice &orifice, c
 
 bool RegionContainer::contains(const Vector3 &c) const
 {
-  // A grain below the orifice is on its way out; a run may go on from there. Region::match() would say that
-  // everything is inside a region with an open face.
-  return c.z() < orifice_.centre.z() || (region_->inside(c.x(), c.y(), c.z()) != 0) == (region_->interior != 0);
+  if (c.z() < orifice_.centre.z()) return false;
+  // Region::match() would say that everything is inside a region with an open face.
+  return (region_->inside(c.x(), c.y(), c.z()) != 0) == (region_->interior != 0);
 }
 
 void RegionContainer::contacts(const Vector3 &c, double reach, spot::WallContacts &contacts) const

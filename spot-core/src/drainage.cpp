@@ -51,7 +51,7 @@ void Drainage::require_inside() const {
 }
 
 void Drainage::require_valid_start() {
-  spot::require_inside(packing_, *container_, limits_.outlet, container_->orifice().radius);
+  spot::require_inside(packing_, *container_, limits_.outlet, container_->orifice().radius + packing_.diameter());
   const Overlap overlap = largest_overlap();
   if (overlap.depth > limits_.largest_overlap * packing_.diameter())
     throw InvalidPacking(message("grains ", overlap.first, " and ", overlap.second, " overlap by ",
@@ -60,7 +60,8 @@ void Drainage::require_valid_start() {
 }
 
 void Drainage::replace(std::shared_ptr<const Container> container, Packing packing) {
-  spot::require_inside(packing, *container, limits_.outlet - packing.diameter(), container->orifice().radius);
+  spot::require_inside(packing, *container, limits_.outlet - packing.diameter(),
+                       std::numeric_limits<double>::infinity());
   container_ = std::move(container);
   packing_ = std::move(packing);
 }

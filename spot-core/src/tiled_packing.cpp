@@ -5,93 +5,23 @@
 #include <cmath>
 #include <limits>
 
-#include "clones.hpp"
+#include "kernels.hpp"
 #include "spot/errors.hpp"
 
 namespace spot {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+const kernels::Kernels& kernels_ = kernels::best();
+
+/// Where empty slots are: so far away that nothing reaches them, and finite, because kernels multiply by zero.
+constexpr double infinity = 0x1p+500;
 
 /// Lists cover this shell around the diameter. Thicker means longer lists, thinner means listing anew more often.
 constexpr double skin_in_diameters = 0.25;
 
 /// Edge of a cell: with 1.5 d a cell of a dense packing holds 3.7 grains, and nine hardly ever.
 constexpr double edge_in_diameters = 1.5;
-
-constexpr int lanes = 8;
-
-/// Adds (dx, dy, dz) to the points within a ball; returns how many.
-SPOT_CLONES int displace_range(double* x, double* y, double* z, std::uint32_t n, const double* middle,
-                               double radius_squared, const double* by) {
-  const double mx = middle[0], my = middle[1], mz = middle[2];
-  const double dx = by[0], dy = by[1], dz = by[2];
-  int moved = 0;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double rx = x[i] - mx, ry = y[i] - my, rz = z[i] - mz;
-    const bool inside = rx * rx + ry * ry + rz * rz <= radius_squared;
-    x[i] += inside ? dx : 0.0;
-    y[i] += inside ? dy : 0.0;
-    z[i] += inside ? dz : 0.0;
-    moved += inside ? 1 : 0;
-  }
-  return moved;
-}
-
-/// What the kernels need to know of a packing.
-struct SlotArrays {
-  const double *x, *y, *z;
-  const std::uint32_t* lists;
-  std::uint32_t list_capacity;
-  double diameter_squared, share, shift;
-};
-
-/// Pushes of the neighbours on `lanes` grains at a time: share * (d - r) along the line of centres for r < d.
-/// (d - r) / r is expanded in s = 1 - r^2/d^2, good to 1e-4 of itself for overlaps up to 0.05 d; deeper ones are
-/// pushed apart by somewhat less, which another sweep makes good.
-SPOT_CLONES void push_off_neighbours(const SlotArrays& a, const std::uint32_t* slots, std::uint32_t longest,
-                                     double* push_x, double* push_y, double* push_z) {
-  double x[lanes], y[lanes], z[lanes], px[lanes] = {}, py[lanes] = {}, pz[lanes] = {};
-  std::uint32_t list[lanes];
-  const double per_square = 1.0 / a.diameter_squared;
-  for (int l = 0; l < lanes; ++l) {
-    x[l] = a.x[slots[l]];
-    y[l] = a.y[slots[l]];
-    z[l] = a.z[slots[l]];
-    list[l] = slots[l] * a.list_capacity;
-  }
-  for (std::uint32_t k = 0; k < longest; ++k) {
-    for (int l = 0; l < lanes; ++l) {
-      const std::uint32_t j = a.lists[list[l] + k];
-      const double dx = x[l] - a.x[j], dy = y[l] - a.y[j], dz = z[l] - a.z[j];
-      const double s = 1.0 - (dx * dx + dy * dy + dz * dz) * per_square;
-      const double series = s * (0.5 + s * (0.375 + s * (0.3125 + s * 0.2734375)));
-      const double scale = s > 0.0 ? a.share * series : 0.0;
-      // An empty slot is infinitely far: 0 * infinity must not become a push.
-      const double qx = s > 0.0 ? scale * dx : 0.0, qy = s > 0.0 ? scale * dy : 0.0, qz = s > 0.0 ? scale * dz : 0.0;
-      px[l] += (qx + a.shift) - a.shift;
-      py[l] += (qy + a.shift) - a.shift;
-      pz[l] += (qz + a.shift) - a.shift;
-    }
-  }
-  for (int l = 0; l < lanes; ++l) {
-    push_x[l] = px[l];
-    push_y[l] = py[l];
-    push_z[l] = pz[l];
-  }
-}
-
-/// Appends to `wandered` the slots of a range that are farther from their references than half the skin.
-SPOT_CLONES bool any_wandered(const double* x, const double* y, const double* z, const double* rx, const double* ry,
-                              const double* rz, std::uint32_t n, double half_skin_squared) {
-  int far = 0;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double dx = x[i] - rx[i], dy = y[i] - ry[i], dz = z[i] - rz[i];
-    far += dx * dx + dy * dy + dz * dz > half_skin_squared ? 1 : 0;  // false for the NaN of empty slots
-  }
-  return far != 0;
-}
 
 }  // namespace
 
@@ -123,7 +53,7 @@ void TiledPacking::lay_out(const std::vector<Grain>& grains, const Container& co
   if (cells * capacity_ * list_capacity_ > std::numeric_limits<std::uint32_t>::max())
     throw InvalidPacking(message("grains are spread over ", cells, " cells of ", edge_, ", which is too many"));
   nowhere_ = static_cast<std::uint32_t>(cells * capacity_);
-  const std::size_t slots = nowhere_ + lanes;
+  const std::size_t slots = nowhere_ + kernels::lanes;
   for (auto* v : {&x_, &y_, &z_, &reference_x_, &reference_y_, &reference_z_}) v->assign(slots, infinity);
   ids_.assign(slots, -1);
   held_.assign(slots, 0);
@@ -219,7 +149,7 @@ int TiledPacking::displace(const Move& move, double radius, double influence) {
   int moved = 0;
   for (const Row& row : rows_) {
     const std::uint32_t first = row.first * capacity_;
-    moved += displace_range(x_.data() + first, y_.data() + first, z_.data() + first, (row.last - row.first) * capacity_,
+    moved += kernels_.displace(x_.data() + first, y_.data() + first, z_.data() + first, (row.last - row.first) * capacity_,
                             move.middle.data(), radius * radius, by);
     for (std::uint32_t cell = row.first; cell < row.last; ++cell) {
       ++account_[cell];
@@ -235,7 +165,7 @@ void TiledPacking::update_lists(const Container& container) {
     if (!touched_[cell]) continue;
     touched_[cell] = 0;
     const std::uint32_t first = cell * capacity_;
-    if (!any_wandered(x_.data() + first, y_.data() + first, z_.data() + first, reference_x_.data() + first,
+    if (!kernels_.any_beyond(x_.data() + first, y_.data() + first, z_.data() + first, reference_x_.data() + first,
                       reference_y_.data() + first, reference_z_.data() + first, capacity_, half_skin_ * half_skin_))
       continue;
     for (std::uint32_t slot = first; slot < first + capacity_; ++slot) {
@@ -302,7 +232,7 @@ void TiledPacking::add_neighbour(std::uint32_t slot, std::uint32_t neighbour) {
   if (list_size_[slot] == list_capacity_) {
     const std::uint32_t longer = 2 * list_capacity_;
     if (longer > 128) throw InvalidPacking(message("a grain has more than ", list_capacity_, " neighbours: the packing has collapsed"));
-    std::vector<std::uint32_t> lists(static_cast<std::size_t>(nowhere_ + lanes) * longer, nowhere_);
+    std::vector<std::uint32_t> lists(static_cast<std::size_t>(nowhere_ + kernels::lanes) * longer, nowhere_);
     for (std::size_t s = 0; s < nowhere_; ++s)
       std::copy_n(lists_.begin() + static_cast<std::ptrdiff_t>(s * list_capacity_), list_size_[s],
                   lists.begin() + static_cast<std::ptrdiff_t>(s * longer));
@@ -334,16 +264,16 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, int due,
       if (ids_[slot] >= 0 && !held_[slot]) active_.push_back(slot);
   }
   const std::size_t n = active_.size();
-  while (active_.size() % lanes != 0) active_.push_back(nowhere_);
+  while (active_.size() % kernels::lanes != 0) active_.push_back(nowhere_);
   push_x_.resize(active_.size());
   push_y_.resize(active_.size());
   push_z_.resize(active_.size());
-  const SlotArrays arrays{x_.data(),      y_.data(),       z_.data(), lists_.data(), list_capacity_,
+  const kernels::Slots arrays{x_.data(),      y_.data(),       z_.data(), lists_.data(), list_capacity_,
                           diameter_ * diameter_, parameters.pair_share(), 1.5 * std::ldexp(quantum_.length(), 52)};
-  for (std::size_t k = 0; k < active_.size(); k += lanes) {
+  for (std::size_t k = 0; k < active_.size(); k += kernels::lanes) {
     std::uint32_t longest = 0;
-    for (int l = 0; l < lanes; ++l) longest = std::max<std::uint32_t>(longest, list_size_[active_[k + l]]);
-    push_off_neighbours(arrays, active_.data() + k, longest, push_x_.data() + k, push_y_.data() + k, push_z_.data() + k);
+    for (int l = 0; l < kernels::lanes; ++l) longest = std::max<std::uint32_t>(longest, list_size_[active_[k + l]]);
+    kernels_.push_off_neighbours(arrays, active_.data() + k, longest, push_x_.data() + k, push_y_.data() + k, push_z_.data() + k);
   }
   active_.resize(n);
   push_off_walls(container, parameters.fixed_share());

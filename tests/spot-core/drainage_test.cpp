@@ -435,7 +435,7 @@ TEST(DrainageUnit, GrainsThatWereDrivenOutOfTheContainerAreNamed) {
 }
 
 TEST(DrainageUnit, GrainsOutsideAreNamed) {
-  for (const Vector3& outside : {Vector3(6.1, 0, 3), Vector3(0, -4.2, 3), Vector3(5, 0, -0.1), Vector3(0, 0, -1.1)})
+  for (const Vector3& outside : {Vector3(6.1, 0, 3), Vector3(0, -4.2, 3), Vector3(5.1, 0, -0.1), Vector3(0, 0, -1.1)})
     EXPECT_THAT(scenes::text_of<InvalidPacking>([&] {
                   drainage_of({{1, {0.0, 0.0, 1.0}}, {42, outside}});
                 }),

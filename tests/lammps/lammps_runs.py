@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A small silo, the deck that drains it, and the programs that run the deck, each in a process of its own.
+
+Lengths are in grain diameters, times in sqrt(diameter / gravity), unless a deck says otherwise.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LOAD_SPOT = ROOT / "lammps-package" / "load_spot.lmp"
+FRONT_END = os.environ.get("SPOT_LMP", str(ROOT / "build" / "bin" / "lmp"))
+PLUGIN = os.environ.get("SPOT_PLUGIN", str(ROOT / "build" / "lib" / "spotplugin.so"))
+DISTRIBUTION = shutil.which("lmp")
+
+needs_distribution = pytest.mark.skipif(DISTRIBUTION is None or not os.path.exists(PLUGIN),
+                                        reason="needs lmp on the PATH (Debian: apt install lammps) and the plugin")
+# Both ways in: our own lmp, and the distribution's with the plugin.
+programs = pytest.mark.parametrize("program", [pytest.param(FRONT_END, id="front-end"),
+                                               pytest.param(DISTRIBUTION, id="plugin", marks=needs_distribution)])
+
+HALF_WIDTH, HALF_DEPTH, HEIGHT, ORIFICE = 5.0, 4.0, 10.0, 3.0
+BOX = (-HALF_WIDTH, HALF_WIDTH, -HALF_DEPTH, HALF_DEPTH, -4.0, 20.0)
+WALLS = f"box {-HALF_WIDTH} {HALF_WIDTH} {-HALF_DEPTH} {HALF_DEPTH}"
+OPENING = f"orifice 0 0 0 {ORIFICE}"
+# Four times the influence of 2006 and a quarter of the births: the same outflow at a quarter of the cost.
+RATES = "influence 1e-2 speed 3.2 injection 100"
+FIX = f"fix drain all spot {WALLS} {OPENING} {RATES} seed 1"
+
+
+def lattice(inside=lambda x, y, z: True):
+    """A body-centred lattice at the packing fraction of dense flow, 0.58: no two grains of diameter 1 touch."""
+    edge = 1.218
+    corner = np.stack(np.meshgrid(*3 * [np.arange(-12, 13)], indexing="ij"), axis=-1).reshape(-1, 3) * edge
+    points = np.concatenate([corner, corner + edge / 2]) + (0.1, 0.05, 0.3)
+    x, y, z = points.T
+    filled = (abs(x) <= HALF_WIDTH - 0.5) & (abs(y) <= HALF_DEPTH - 0.5) & (z >= 0.5) & (z <= HEIGHT)
+    return points[filled & np.array([inside(*p) for p in points])]
+
+
+def write_data(path, points, ids=None, diameter=1.0, box=BOX, diameters=None, density=1.0):
+    """A LAMMPS data file of the points times `diameter`."""
+    ids = range(1, len(points) + 1) if ids is None else ids
+    diameters = len(points) * [diameter] if diameters is None else diameters
+    lines = ["grains", "", f"{len(points)} atoms", "1 atom types", ""]
+    lines += [f"{box[2 * k] * diameter:.15g} {box[2 * k + 1] * diameter:.15g} {axis}lo {axis}hi" for k, axis in enumerate("xyz")]
+    lines += ["", "Atoms # sphere", ""]
+    lines += [f"{grain} 1 {d:.15g} {density:.15g} " + " ".join(f"{c * diameter:.15g}" for c in point)
+              for grain, point, d in zip(ids, points, diameters)]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def deck(fix=FIX, run="run 30", before="", after="", units="lj", boundary="f f f", timestep=0.1):
+    """A deck that drains packing.data; `before` and `after` are lines before and after the fix."""
+    return f"""
+units {units}
+atom_style sphere
+boundary {boundary}
+include {LOAD_SPOT}
+read_data packing.data
+{before}
+{fix}
+timestep {timestep}
+thermo 5
+thermo_style custom step atoms f_drain[*]
+thermo_modify lost error format float %.15g
+dump grains all custom 10 grains.dump id type x y z radius vx vy vz
+dump_modify grains sort id format float %.17g
+{after}
+{run}
+"""
+
+
+def run(text, folder, program=FRONT_END, launcher=(), **environment):
+    """Run a deck in `folder`, which gets the small silo's packing.data unless it has one; the finished process."""
+    if not (folder / "packing.data").exists():
+        write_data(folder / "packing.data", lattice())
+    (folder / "in.deck").write_text(text)
+    return subprocess.run([*launcher, program, "-in", "in.deck", "-log", "none", "-nocite"], cwd=folder,
+                          env={**os.environ, "SPOT_PLUGIN": PLUGIN, **environment}, capture_output=True, text=True, timeout=300)
+
+
+def run_ok(text, folder, **options):
+    """The screen output of a deck that has to succeed."""
+    done = run(text, folder, **options)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    return done.stdout
+
+
+def drain(folder, program=FRONT_END, **parts):
+    """The dump, as bytes, of a deck made of these parts."""
+    folder.mkdir(exist_ok=True)
+    run_ok(deck(**parts), folder, program=program)
+    return (folder / "grains.dump").read_bytes()
+
+
+def error_of(text, folder, **options):
+    """The error message of a deck that has to fail."""
+    done = run(text, folder, **options)
+    said = done.stdout + done.stderr
+    assert done.returncode != 0, said[-3000:]
+    errors = re.findall(r"^ERROR[^:]*: (.*)$", said, flags=re.MULTILINE)
+    assert len(set(errors)) == 1, said[-3000:]
+    return errors[0]
+
+
+def read_dump(path):
+    """Frames of a text dump: a list of (step, {column: values})."""
+    frames = []
+    with open(path, encoding="ascii") as dump:
+        while dump.readline():
+            step = int(dump.readline())
+            dump.readline()
+            count = int(dump.readline())
+            for _ in range(4):
+                dump.readline()
+            columns = dump.readline().split()[2:]
+            rows = np.array([dump.readline().split() for _ in range(count)], dtype=float).reshape(count, len(columns))
+            frames.append((step, dict(zip(columns, rows.T))))
+    return frames
+
+
+def positions(frame):
+    return np.stack([frame[axis] for axis in "xyz"], axis=1)
+
+
+def thermo(screen):
+    """{column: values} of every line of thermo output; lines that two runs share stand twice."""
+    rows, columns = [], []
+    for line in screen.splitlines():
+        words = line.split()
+        if words[:1] == ["Step"]:
+            columns = words
+        elif columns and len(words) == len(columns) and re.fullmatch(r"\d+", words[0]):
+            rows.append([float(word) for word in words])
+    return dict(zip(columns, np.array(rows).T))

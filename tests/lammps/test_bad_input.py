@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every mistake ends in one error that names the offending word and says what is allowed."""
+
+import os
+import shutil
+
+import pytest
+
+from lammps_runs import (DISTRIBUTION, FIX, FRONT_END, LOAD_SPOT, OPENING, PLUGIN, RATES, WALLS, deck, error_of, lattice,
+                         needs_distribution, programs, run, run_ok, write_data)
+
+COMPLETE = {"walls": WALLS, "orifice": OPENING, "influence": "influence 1e-2", "speed": "speed 3.2",
+            "injection": "injection 100"}
+
+
+def fix(*more, **parts):
+    """The complete command with parts replaced (None leaves one out), and more words after it."""
+    return " ".join(["fix drain all spot", *filter(None, {**COMPLETE, **parts}.values()), *map(str, more)])
+
+
+def has(error, *words):
+    for word in words:
+        assert word in error, error
+
+
+@programs
+def test_missing_walls(tmp_path, program):
+    has(error_of(deck(fix(walls=None)), tmp_path, program=program), "keyword 'box' is missing", "cylinder x y radius", "region ID")
+
+
+@pytest.mark.parametrize("keyword", ["orifice", "speed", "injection"])
+def test_missing_keyword(tmp_path, keyword):
+    has(error_of(deck(fix(**{keyword: None})), tmp_path), f"keyword '{keyword}' is missing")
+
+
+@pytest.mark.parametrize("words, said", [
+    ("inflence 1e-2", ["unknown keyword 'inflence'", "influence injection"]),
+    ("7", ["unknown keyword '7'"]),
+    ("dz", ["'dz' ends before its value"]),
+    ("buffer 1", ["'buffer' ends before its value", "base"]),
+    ("radius 2.6d", ["'2.6d' is not a finite number", "'radius'"]),
+    ("speed nan", ["'nan' is not a finite number", "'speed'"]),
+    ("injection inf", ["'inf' is not a finite number", "'injection'"]),
+    ("injection 0", ["'injection' is 0", "must be positive"]),
+    ("speed -3.2", ["'speed' is -3.2", "must be positive"]),
+    ("radius -1", ["'radius' is -1", "must be positive"]),
+    ("influence 0", ["'influence' is 0", "must be positive"]),
+    ("influence 1.5", ["influence is 1.5", "below 1"]),
+    ("diffusion -1", ["'diffusion' is -1", "must be positive"]),
+    ("dz 0", ["'dz' is 0", "must be positive"]),
+    ("seed 1.5", ["'1.5' after keyword 'seed'", "whole number, 1 or more"]),
+    ("seed -1", ["'-1' after keyword 'seed'", "whole number, 1 or more"]),
+    ("buffer -1 1", ["'buffer' is -1", "zero or positive"]),
+    ("shell -1", ["'shell' is -1", "zero or positive"]),
+    ("alpha 2", ["alpha is 2", "below 2"]),
+    ("overlap 0", ["'overlap' is 0", "must be positive"]),
+    ("average 0", ["'0' after keyword 'average'", "1 or more"]),
+    ("relax often", ["'relax often' is not known", "relax every k", "relax never"]),
+    ("relax every 0", ["'0' after keyword 'relax'", "1 or more"]),
+    ("strength 0.5", ["'strength 0.5' is not known", "'half'", "'full'"]),
+    ("window 0", ["'window' is 0", "must be positive"]),
+    ("window 0.03", ["timestep 0.1", "whole number of windows of 0.03"]),
+    ("window 0.2", ["timestep 0.1", "whole number of windows of 0.2"]),
+    ("window 1e-300", ["timestep 0.1", "whole number of windows"]),
+    ("cylinder 0 0 4", ["only one of 'box', 'cylinder' and 'region'"]),
+    ("region silo", ["only one of 'box', 'cylinder' and 'region'"]),
+    ("outlet 0.5", ["outlet is at z = 0.5", "not above the orifice, 0"]),
+    ("outlet -5.3", ["outlet is at z = -5.3", "simulation box begins at -4"]),
+    ("radius 1.2 outlet -2.5", ["outlet is at z = -2.5", "must be above -2.35", "reach of newborn spots"]),
+    ("radius 3.1", ["orifice radius is 3 ", "at least the spot radius, 3.1"]),
+    ("buffer 5 1", ["walls along y are 8 apart", "at least 10"]),
+], ids=lambda value: value if isinstance(value, str) else "")
+def test_value(tmp_path, words, said):
+    has(error_of(deck(fix(words), run="run 1"), tmp_path), "fix spot", *said)
+
+
+@pytest.mark.parametrize("parts, said", [
+    ({"walls": "box 5 -5 -4 4"}, ["walls along x", "increasing order"]),
+    ({"walls": "box -6 6 -4 4"}, ["walls along x, at -6 and 6", "simulation box, from -5 to 5"]),
+    ({"walls": "cylinder 0 0 4.5"}, ["walls along y, at -4.5 and 4.5", "simulation box"]),
+    ({"walls": "cylinder 0 0 0"}, ["cylinder's radius must be positive"]),
+    ({"walls": "cylinder 0 0 2.8"}, ["wider than the base of radius 2.8"]),
+    ({"orifice": "orifice 0 0 0 4.5"}, ["orifice of radius 4.5", "wider than the base", "y from -4 to 4"]),
+    ({"orifice": "orifice 3 0 0 3"}, ["wider than the base", "x from -5 to 5"]),
+    ({"orifice": "orifice 0 0 0 2"}, ["orifice radius is 2 ", "at least the spot radius, 2.6"]),
+    ({"orifice": "orifice 0 0 3"}, ["'influence' is not a finite number", "'orifice'"]),
+    ({"walls": "region silo"}, ["region 'silo' does not exist"]),
+], ids=lambda value: " ".join(value.values()) if isinstance(value, dict) else "")
+def test_geometry(tmp_path, parts, said):
+    has(error_of(deck(fix(**parts), run="run 1"), tmp_path), "fix spot", *said)
+
+
+BLOCK = "region silo block -5 5 -4 4 0 19 open 5"
+
+
+def test_region_deleted_between_runs(tmp_path):
+    error = error_of(deck(fix(walls="region silo"), before=BLOCK, run="run 2\nregion silo delete\nrun 2"), tmp_path)
+    has(error, "region 'silo' does not exist")
+
+
+def test_region_that_moves(tmp_path):
+    moving = "variable push equal 0.1*elapsed\n" + BLOCK + " move v_push NULL NULL"
+    has(error_of(deck(fix(walls="region silo"), before=moving), tmp_path), "region 'silo' moves", "not supported")
+
+
+def test_region_without_the_orifice(tmp_path):
+    has(error_of(deck(fix(walls="region silo"), before="region silo block -5 5 -4 4 1 19 open 5"), tmp_path),
+        "the orifice at (0, 0, ", "outside region silo")
+
+
+def test_grain_outside_a_region_with_an_open_face(tmp_path):
+    """LAMMPS says that everything is inside such a region."""
+    has(error_of(deck(fix(walls="region silo"), before="region silo block -4 4 -4 4 0 19 open 5"), tmp_path),
+        "grain ", "is outside the container")
+
+
+def test_two_fixes(tmp_path):
+    has(error_of(deck(fix() + "\n" + fix().replace("drain", "again", 1)), tmp_path), "only one fix spot")
+
+
+def test_atom_style_without_radius(tmp_path):
+    text = f"units lj\ninclude {LOAD_SPOT}\nboundary f f f\nregion all block -5 5 -4 4 -4 20\ncreate_box 1 all\n{fix()}\n"
+    has(error_of(text, tmp_path), "needs grains with a radius", "atom_style sphere")
+
+
+def test_before_the_box(tmp_path):
+    has(error_of(f"atom_style sphere\ninclude {LOAD_SPOT}\n{fix()}\n", tmp_path), "before simulation box is defined")
+
+
+@pytest.mark.parametrize("before, said", [
+    ("set atom 17 diameter 1.1", ["one diameter, 1", "grain 17 has 1.1"]),
+    ("set group all diameter 0", ["no diameter"]),
+    ("variable none atom (1e300*1e300)-(1e300*1e300)\nset atom 17 x v_none", ["position of grain 17 is not finite"]),
+    ("set atom 17 z -0.5", ["grain 17 at (", "-0.5) is outside the container"]),
+    ("delete_atoms group all", ["there are no grains"]),
+    ("change_box all triclinic", ["triclinic box"]),
+], ids=lambda value: value.splitlines()[-1] if isinstance(value, str) else "")
+def test_grains(tmp_path, before, said):
+    has(error_of(deck(fix(), before=before, run="run 1"), tmp_path), *said)
+
+
+def overlapping(folder):
+    points = lattice()
+    points[40] = points[39] + (0, 0, 0.9)
+    write_data(folder / "packing.data", points[[*range(40), 40]])
+
+
+def test_overlap_at_the_start(tmp_path):
+    overlapping(tmp_path)
+    has(error_of(deck(fix()), tmp_path), "grains 40 and 41 overlap by 0.1", "diameters", "at most 0.03 is allowed")
+
+
+def test_overlap_at_the_start_is_settable(tmp_path):
+    overlapping(tmp_path)
+    run_ok(deck(fix("overlap 0.11"), run="run 1"), tmp_path)
+    has(error_of(deck(fix("overlap 0.09"), run="run 1"), tmp_path), "at most 0.09 is allowed")
+
+
+def test_grain_at_the_wall(tmp_path):
+    write_data(tmp_path / "packing.data", [(4.8, 0, 3)], box=(-6, 6, -5, 5, -4, 20))
+    has(error_of(deck(fix(walls="box -4.5 4.5 -4 4")), tmp_path), "grain 1 at (4.8, 0, 3) is outside the container")
+
+
+@pytest.mark.parametrize("boundary, said", [
+    ("p f f", ["lower boundary in x is periodic", "boundary f f f"]),
+    ("f p f", ["lower boundary in y is periodic"]),
+    ("f f s", ["lower boundary in z is shrink-wrapped", "boundary f f f"]),
+    ("f f fm", ["upper boundary in z is shrink-wrapped"]),
+])
+def test_boundary(tmp_path, boundary, said):
+    has(error_of(deck(fix(), boundary=boundary), tmp_path), *said)
+
+
+def test_two_dimensions(tmp_path):
+    text = (f"dimension 2\natom_style sphere\ninclude {LOAD_SPOT}\nregion all block -5 5 -4 4 -0.5 0.5\n"
+            f"create_box 1 all\n{fix()}\n")
+    has(error_of(text, tmp_path), "3 dimensions")
+
+
+def test_respa(tmp_path):
+    has(error_of(deck(fix(), after="run_style respa 2 2"), tmp_path), "run_style respa")
+
+
+def test_minimize(tmp_path):
+    text = deck(fix(), after="pair_style zero 1.0\npair_coeff * *", run="minimize 0 0 1 1")
+    has(error_of(text, tmp_path), "does not work with minimize")
+
+
+@pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
+@programs
+def test_two_ranks(tmp_path, program):
+    launcher = ["mpirun", "--oversubscribe", "-np", "2"] + (["--allow-run-as-root"] if os.geteuid() == 0 else [])
+    has(error_of(deck(fix()), tmp_path, program=program, launcher=launcher), "1 MPI rank, not on 2")
+
+
+@needs_distribution
+def test_plugin_that_is_not_there(tmp_path):
+    done = run(deck(), tmp_path, program=DISTRIBUTION, SPOT_PLUGIN="/nowhere/spotplugin.so")
+    assert done.returncode != 0
+    has(done.stderr, "ERROR: cannot load /nowhere/spotplugin.so", "set SPOT_PLUGIN")
+
+
+@needs_distribution
+def test_plugin_not_loaded(tmp_path):
+    has(error_of(deck().replace("include", "#"), tmp_path, program=DISTRIBUTION), "Unrecognized fix style 'spot'")
+
+
+@needs_distribution
+def test_plugin_of_another_name_and_relative_path(tmp_path):
+    """The variable names any file, also relative to where lmp is started."""
+    shutil.copy(PLUGIN, tmp_path / "other.so")
+    done = run(deck(run="run 1"), tmp_path, program=DISTRIBUTION, SPOT_PLUGIN="other.so")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_option_that_lmp_does_not_know(tmp_path):
+    has(error_of(deck(), tmp_path, launcher=[FRONT_END, "-nonsense"]), "Invalid command-line argument")

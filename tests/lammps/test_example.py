@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""examples/silo/in.silo_spot, a short stretch of it, on its real packing."""
+
+import gzip
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+from lammps_runs import DISTRIBUTION, FRONT_END, PLUGIN, ROOT, needs_distribution
+
+SILO = ROOT / "examples" / "silo"
+
+
+def run_example(program, out, **variables):
+    """Snapshots of the deck as bytes, by name."""
+    command = [program, "-in", "in.silo_spot", "-log", "none", "-var", "out", str(out)]
+    for name, value in variables.items():
+        command += ["-var", name, str(value)]
+    done = subprocess.run(command, cwd=SILO, env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    return {path.name: gzip.decompress(path.read_bytes()) for path in sorted(out.glob("*.dump.gz"))}
+
+
+@pytest.fixture(scope="module")
+def snapshots(tmp_path_factory):
+    out = tmp_path_factory.mktemp("front-end") / "made-by-the-deck"
+    return out, run_example(FRONT_END, out, time=0.035)
+
+
+def test_cadence_and_columns(snapshots):
+    out, dumps = snapshots
+    assert list(dumps)[:2] == ["drain.0.dump.gz", "drain.20.dump.gz"]  # 2 tau apart
+    for dump in dumps.values():
+        assert b"ITEM: ATOMS id type x y z radius vx vy vz\n" in dump
+    scene = json.loads((out / "scene.json").read_text())
+    assert scene["grains"] == 55000
+    assert scene["timestep"] * 20 == pytest.approx(2 * (0.003 / 9.81)**0.5)
+
+
+def test_grains_move_and_leave(snapshots):
+    first, *_, last = (np.loadtxt(dump.splitlines()[9:]) for dump in snapshots[1].values())
+    assert len(first) == 55000 and 54000 < len(last) < 55000
+    assert (abs(last[:, 2]) < 25 * 0.003).all() and (abs(last[:, 3]) < 4 * 0.003).all()
+    fallen = first[np.searchsorted(first[:, 0], last[:, 0]), 4] - last[:, 4]
+    assert fallen.max() > 0.003
+
+
+@needs_distribution
+def test_plugin_gives_the_same_bytes(snapshots, tmp_path):
+    assert run_example(DISTRIBUTION, tmp_path / "out", time=0.035) == snapshots[1]
+
+
+def test_seed(snapshots, tmp_path):
+    other = run_example(FRONT_END, tmp_path / "out", time=0.02, seed=7)
+    assert other["drain.0.dump.gz"] == snapshots[1]["drain.0.dump.gz"]
+    assert other["drain.20.dump.gz"] != snapshots[1]["drain.20.dump.gz"]

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the fix says: grains that leave, velocities, the global vector, the spots."""
+
+import numpy as np
+import pytest
+
+from lammps_runs import (FIX, HALF_DEPTH, HALF_WIDTH, deck, lattice, positions, programs, read_dump, run_ok, thermo, write_data)
+
+# f_drain[1] to f_drain[7]
+SPOTS, MOVES, DRAINED, MASS, OUTFLOW, OVERLAP, SWEEPS = (f"f_drain[{k}]" for k in range(1, 8))
+DUMP_SPOTS = "dump spots all local 1 spots.dump f_drain[1] f_drain[2] f_drain[3] f_drain[4] f_drain[5]"
+
+
+@pytest.fixture(scope="module")
+def drained(tmp_path_factory):
+    """Thermo columns, frames of the grains (every step) and frames of the spots of one drainage."""
+    folder = tmp_path_factory.mktemp("drained")
+    screen = run_ok(deck(fix=FIX + " average 10", run="run 30",
+                         after=f"dump_modify grains every 1\nthermo 1\n{DUMP_SPOTS}"), folder)
+    return thermo(screen), read_dump(folder / "grains.dump"), read_dump(folder / "spots.dump")
+
+
+def test_drained_grains_vanish_below_the_outlet(drained):
+    _, frames, _ = drained
+    lowest = min(frame["z"].min() for _, frame in frames)
+    assert -1 <= lowest < -0.5  # outlet: a diameter below the orifice
+    seen = frames[0][1]["id"]
+    for (_, before), (_, after) in zip(frames, frames[1:]):
+        gone = ~np.isin(before["id"], after["id"])
+        assert np.isin(after["id"], before["id"]).all()
+        assert (before["z"][gone] < 0.5).all()  # a step moves a grain by far less than a diameter
+    assert len(seen) - len(frames[-1][1]["id"]) > 30
+
+
+def test_counts_agree(drained):
+    log, frames, _ = drained
+    left = np.array([len(frame["id"]) for _, frame in frames])
+    assert (log["Atoms"] == left).all()
+    assert (log[DRAINED] == left[0] - left).all()
+    assert log[MASS] == pytest.approx(log[DRAINED] * np.pi / 6)
+    averaged = np.minimum(np.arange(len(left)), 10)
+    earlier = log[DRAINED][np.arange(len(left)) - averaged]
+    assert log[OUTFLOW][1:] == pytest.approx(((log[DRAINED] - earlier)[1:] / (averaged[1:] * 0.1)))
+
+
+def test_largest_overlap(drained):
+    log, frames, _ = drained
+    for k, (_, frame) in list(enumerate(frames))[::6]:
+        x = positions(frame)
+        squared = ((x[:, None] - x)**2).sum(axis=2)
+        np.fill_diagonal(squared, 1)
+        assert log[OVERLAP][k] == pytest.approx(max(0, 1 - np.sqrt(squared.min())), abs=1e-9)
+    assert 0 < log[OVERLAP].max() < 0.05
+
+
+def test_moves_and_sweeps(drained):
+    log, _, spots = drained
+    assert (np.diff(log[MOVES]) >= 0).all() and (np.diff(log[SWEEPS]) >= 0).all()
+    assert (log[SWEEPS] <= log[MOVES]).all()
+    # None has reached the top yet: every step that was ever taken is still on the account of a spot.
+    taken = [frame["f_drain[5]"].sum() for _, frame in spots]
+    assert log[MOVES][:20] == pytest.approx(taken[:20])
+
+
+def test_spots_in_dump_local(drained):
+    log, _, spots = drained
+    assert len(spots) == 31
+    for k, (_, frame) in enumerate(spots):
+        assert list(frame) == [f"f_drain[{c}]" for c in range(1, 6)]
+        identity, x, y, z, steps = frame.values()
+        assert len(identity) == log[SPOTS][k]
+        assert (np.diff(identity) > 0).all()
+        assert (steps == steps.round()).all() and (steps >= 0).all()
+        assert (abs(x) <= HALF_WIDTH - 1 + 1e-9).all() and (abs(y) <= HALF_DEPTH - 1 + 1e-9).all()
+        assert z == pytest.approx(-2.6 + 0.1 * steps)  # births R_s below the orifice, steps of 0.1 d
+    # Poisson: 100 births a time; the last spot ever born has the largest id.
+    born = spots[-1][1]["f_drain[1]"].max() + 1
+    assert abs(born - 300) < 5 * np.sqrt(300)
+
+
+def test_no_grain_outside_and_none_too_deep(drained):
+    _, frames, _ = drained
+    for _, frame in frames:
+        x = positions(frame)
+        assert (abs(x[:, 0]) <= HALF_WIDTH - 0.45).all() and (abs(x[:, 1]) <= HALF_DEPTH - 0.45).all()
+        below = x[:, 2] < 0
+        assert (np.hypot(x[below, 0], x[below, 1]) < 3.1).all()
+
+
+def test_velocity_is_displacement_over_the_step(drained):
+    _, frames, _ = drained
+    for (_, before), (_, after) in zip(frames[10:], frames[11:]):
+        stays = np.isin(before["id"], after["id"])
+        moved = positions(after) - positions(before)[stays]
+        velocity = np.stack([after[f"v{axis}"] for axis in "xyz"], axis=1)
+        assert velocity == pytest.approx(moved / 0.1, abs=1e-9)
+
+
+def test_mass_of_unequal_grains(tmp_path):
+    """The drained mass is that of the grains that left, whatever each weighs."""
+    heavy = "set atom 1*300 density 10"
+    screen = run_ok(deck(before=heavy), tmp_path)
+    log, frames = thermo(screen), read_dump(tmp_path / "grains.dump")
+    gone = np.setdiff1d(frames[0][1]["id"], frames[-1][1]["id"])
+    assert 0 < (gone <= 300).sum() < len(gone)
+    assert log[MASS][-1] == pytest.approx(np.where(gone <= 300, 10, 1).sum() * np.pi / 6)
+
+
+@programs
+def test_thermo_keeps_watch_for_lost_grains(tmp_path, program):
+    """Drained grains are not lost ones, not even to `thermo_modify lost error`, at any interval of thermo."""
+    screen = run_ok(deck(after="thermo 1", run="run 30"), tmp_path, program=program)
+    assert "ost atoms" not in screen
+    assert thermo(screen)["Atoms"][-1] < len(lattice())
+
+
+def test_a_silo_that_runs_empty(tmp_path):
+    """Drained to the last grain; a run more changes nothing and is no error."""
+    few = [(0.0, 0.0, 0.6), (1.1, 0.0, 0.6), (0.0, 1.1, 0.6)]
+    write_data(tmp_path / "packing.data", few)
+    screen = run_ok(deck(fix=FIX.replace("influence 1e-2", "influence 0.1"), run="run 60\nrun 5"), tmp_path)
+    log = thermo(screen)
+    assert log["Atoms"][-1] == 0
+    assert log[DRAINED][-1] == 3
+
+
+def test_grains_outside_the_group_are_held(tmp_path):
+    """They do not move by a bit, and the others give way to them."""
+    held = "region few block -2 2 -2 2 2 4\ngroup held region few\ngroup loose subtract all held"
+    run_ok(deck(before=held, fix=FIX.replace("all", "loose", 1), run="run 30"), tmp_path)
+    frames = read_dump(tmp_path / "grains.dump")
+    start, end = frames[0][1], frames[-1][1]
+    x = positions(start)
+    fixed = (abs(x[:, 0]) <= 2) & (abs(x[:, 1]) <= 2) & (x[:, 2] >= 2) & (x[:, 2] <= 4)
+    assert 10 < fixed.sum() < 100
+    kept = np.isin(start["id"][fixed], end["id"])
+    assert kept.all()
+    assert (positions(end)[np.isin(end["id"], start["id"][fixed])] == x[fixed]).all()
+    assert len(end["id"]) < len(start["id"])
+
+
+def test_values_between_runs(tmp_path):
+    """The vector can be asked for between runs, even when the region that held the grains is gone."""
+    fix = FIX.replace("box -5.0 5.0 -4.0 4.0", "region silo")
+    screen = run_ok(deck(before="region silo block -5 5 -4 4 0 20 open 5", fix=fix,
+                         run='run 20\nregion silo delete\nprint "overlap $(f_drain[6]:%.15g)"'), tmp_path)
+    said = [float(line.split()[1]) for line in screen.splitlines() if line.startswith("overlap")]
+    assert said == [pytest.approx(thermo(screen)[OVERLAP][-1])]
