@@ -13,8 +13,9 @@
 #include "utils.h"
 
 #include "region_container.h"
-#include "spot/drainage.hpp"
 #include "spot/errors.hpp"
+#include "spot/time_ordered_drainage.hpp"
+#include "spot/windowed_drainage.hpp"
 #include "spot_command.h"
 
 #include <algorithm>
@@ -104,8 +105,16 @@ void FixSpot::check_run()
       if (domain->boundary[axis][side] != FIXED)
         error->all(FLERR, message("fix spot needs 'boundary f f f': the ", side ? "upper" : "lower", " boundary in ",
                                   "xyz"[axis], " is ", domain->boundary[axis][side] == PERIODIC ? "periodic" : "shrink-wrapped"));
+}
 
-  model->command.window = model->command.window.value_or(update->dt);
+void FixSpot::choose_window()
+{
+  const SpotCommand &command = model->command;
+  if (!command.window) {
+    // In the windowed driver no spot should go far between two relaxations: 0.016 d is six windows a step of 0.1 d.
+    const double longest = 0.016 * model->diameter / command.spots.speed;
+    model->command.window = command.time_ordered ? update->dt : update->dt / std::ceil(update->dt / longest);
+  }
   const double ratio = update->dt / *model->command.window;
   constexpr double most = 1e9;    // an int holds the number of windows in a step
   if (ratio < 0.5 || ratio > most || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
@@ -147,6 +156,7 @@ void FixSpot::init()
   check_run();
   check_other_fixes();
   check_grains();
+  choose_window();
   // Without a pair style nobody else asks for a communication cutoff, and LAMMPS would warn that it is zero.
   comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
   try {
@@ -216,21 +226,34 @@ std::vector<spot::Grain> FixSpot::grains_of_lammps() const
   return grains;
 }
 
-void FixSpot::setup(int)
+void FixSpot::make_drainage(const std::vector<spot::Grain> &grains)
 {
   const SpotCommand &command = model->command;
+  const spot::DrainageLimits limits{*command.outlet, command.largest_overlap};
+  double extent = std::abs(*command.outlet) + model->diameter;
+  for (int axis = 0; axis < 3; ++axis)
+    extent = std::max({extent, std::abs(domain->boxlo[axis]), std::abs(domain->boxhi[axis])});
+  if (command.time_ordered)
+    model->drainage = std::make_unique<spot::TimeOrderedDrainage>(command.spots, command.relaxation, limits,
+                                                                  model->container,
+                                                                  spot::Packing(model->diameter, extent, grains));
+  else
+    model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits,
+                                                               *command.window, model->container, model->diameter,
+                                                               extent, grains);
+}
+
+void FixSpot::setup(int)
+{
   try {
     const std::vector<spot::Grain> grains = grains_of_lammps();
-    double extent = std::abs(*command.outlet) + model->diameter;
-    for (int axis = 0; axis < 3; ++axis)
-      extent = std::max({extent, std::abs(domain->boxlo[axis]), std::abs(domain->boxhi[axis])});
-    spot::Packing packing(model->diameter, extent, grains);
-    if (!model->drainage)
-      model->drainage = std::make_unique<spot::Drainage>(command.spots, command.relaxation,
-                                                         spot::DrainageLimits{*command.outlet, command.largest_overlap},
-                                                         model->container, std::move(packing));
-    else if (packing.grains() != model->drainage->packing().grains() || command.uses_region())
-      model->drainage->replace(model->container, std::move(packing));
+    if (!model->drainage) {
+      make_drainage(grains);
+    } else {
+      if (model->command.uses_region()) model->drainage->replace_container(model->container);
+      if (grains != model->drainage->grains()) model->drainage->replace_grains(grains);
+      model->drainage->require_inside();
+    }
   } catch (const spot::Error &e) {
     error->all(FLERR, message("fix spot: ", e.what()));
   }
@@ -253,17 +276,14 @@ void FixSpot::write_grains()
   auto &local = model->local;
   local.clear();
   for (int i = 0; i < atom->nlocal; ++i) local[atom->tag[i]] = i;
-  const spot::Packing &packing = model->drainage->packing();
   const double per_time = 1.0 / update->dt;
-  for (std::size_t slot = 0; slot < packing.slots(); ++slot) {
-    if (!packing.present(slot)) continue;
-    const int i = local_index(packing.id(slot));
-    const double moved[3] = {packing.x()[slot], packing.y()[slot], packing.z()[slot]};
+  model->drainage->visit_grains([&](const spot::Grain &grain) {
+    const int i = local_index(grain.id);
     for (int axis = 0; axis < 3; ++axis) {
-      atom->v[i][axis] = (moved[axis] - atom->x[i][axis]) * per_time;
-      atom->x[i][axis] = moved[axis];
+      atom->v[i][axis] = (grain.position[axis] - atom->x[i][axis]) * per_time;
+      atom->x[i][axis] = grain.position[axis];
     }
-  }
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -306,7 +326,7 @@ void FixSpot::end_of_step() { list_spots(); }
 
 void FixSpot::list_spots()
 {
-  const std::vector<spot::Spot> &spots = model->drainage->spots();
+  const std::vector<spot::Spot> spots = model->drainage->spots();
   model->spots.resize(spots.size() * COLUMNS);
   model->rows.resize(spots.size());
   for (std::size_t k = 0; k < spots.size(); ++k) {
@@ -359,6 +379,6 @@ double FixSpot::mean_outflow() const
 double FixSpot::memory_usage()
 {
   if (!model->drainage) return 0.0;
-  return static_cast<double>(model->drainage->packing().memory()) +
+  return static_cast<double>(model->drainage->memory()) +
       static_cast<double>(model->spots.capacity() * sizeof(double));
 }

@@ -42,8 +42,10 @@ class FixSpot : public Fix {
 
   void check_run();
   void check_grains();
+  void choose_window();
   void check_other_fixes();
   void make_container();
+  void make_drainage(const std::vector<spot::Grain> &);
   void check_box();
   std::vector<spot::Grain> grains_of_lammps() const;
   void write_grains();

@@ -78,13 +78,16 @@ void set_walls(SpotCommand& command, decltype(SpotCommand::walls) walls) {
 }
 
 void read_relax(SpotCommand& command, Words& words) {
-  const std::string how = words.value("'every' or 'never'");
-  if (how == "never")
+  const std::string how = words.value("'tol', 'every' or 'never'");
+  command.time_ordered = how != "tol";
+  if (how == "tol")
+    command.relaxation.tolerance = words.positive("the tolerance, in diameters,");
+  else if (how == "never")
     command.relaxation.every = 0;
   else if (how == "every")
     command.relaxation.every = static_cast<int>(std::min<long long>(words.integer("moves between relaxations", 1), 1 << 30));
   else
-    throw InvalidParameter(message("'relax ", how, "' is not known; allowed are 'relax every k' and 'relax never'"));
+    throw InvalidParameter(message("'relax ", how, "' is not known; allowed are 'relax tol delta', 'relax every k' and 'relax never'"));
 }
 
 void read_strength(SpotCommand& command, Words& words) {

@@ -26,7 +26,7 @@ void reorder(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
 }  // namespace
 
 Packing::Packing(double diameter, double extent, const std::vector<Grain>& grains)
-    : diameter_(diameter), quantum_(diameter, extent), half_skin_(0.5 * skin_in_diameters * diameter) {
+    : diameter_(diameter), extent_(extent), quantum_(diameter, extent), half_skin_(0.5 * skin_in_diameters * diameter) {
   if (grains.size() >= nowhere)
     throw InvalidPacking(message("a packing of ", grains.size(), " grains is too large; below 2^32 are allowed"));
   for (const Grain& grain : grains) {
@@ -149,9 +149,20 @@ void Packing::list(std::uint32_t i, const Container& container) {
   });
   cell_[i] = grid_.cell_of(x_[i], y_[i], z_[i]);
   grid_.insert(cell_[i], i);
+  mark_near_wall(i, container);
+}
+
+void Packing::mark_near_wall(std::uint32_t i, const Container& container) {
+  // Where it was listed: the mark holds for as long as the list.
   WallContacts contacts;
-  container.contacts(position(i), 0.5 * diameter_ + half_skin_, contacts);
+  container.contacts({reference_x_[i], reference_y_[i], reference_z_[i]}, 0.5 * diameter_ + half_skin_, contacts);
   near_wall_[i] = contacts.begin() != contacts.end() ? 1 : 0;
+}
+
+void Packing::mark_near_walls(const Container& container) {
+  refresh(container);
+  for (std::uint32_t i = 0; i < slots(); ++i)
+    if (present(i)) mark_near_wall(i, container);
 }
 
 void Packing::add_neighbour(std::uint32_t i, std::uint32_t j) {
@@ -181,7 +192,7 @@ Overlap Packing::largest_overlap() const {
       const double squared = dx * dx + dy * dy + dz * dz;
       if (squared >= least) continue;
       least = squared;
-      largest = {diameter_ - std::sqrt(squared), std::min(ids_[i], ids_[*j]), std::max(ids_[i], ids_[*j])};
+      largest = {1.0 - std::sqrt(squared) / diameter_, std::min(ids_[i], ids_[*j]), std::max(ids_[i], ids_[*j])};
     }
   }
   return largest;

@@ -15,7 +15,8 @@ namespace {
 const kernels::Kernels& kernels_ = kernels::best();
 
 /// Where empty slots are: so far away that nothing reaches them, and finite, because kernels multiply by zero.
-constexpr double infinity = 0x1p+500;
+constexpr double far_away = 0x1p+500;
+constexpr Point nobody = {far_away, far_away, far_away, 0.0};
 
 /// Lists cover this shell around the diameter. Thicker means longer lists, thinner means listing anew more often.
 constexpr double skin_in_diameters = 0.25;
@@ -54,9 +55,11 @@ void TiledPacking::lay_out(const std::vector<Grain>& grains, const Container& co
     throw InvalidPacking(message("grains are spread over ", cells, " cells of ", edge_, ", which is too many"));
   nowhere_ = static_cast<std::uint32_t>(cells * capacity_);
   const std::size_t slots = nowhere_ + kernels::lanes;
-  for (auto* v : {&x_, &y_, &z_, &reference_x_, &reference_y_, &reference_z_}) v->assign(slots, infinity);
+  points_.assign(slots, nobody);
+  references_.assign(slots, nobody);
   ids_.assign(slots, -1);
   held_.assign(slots, 0);
+  held_slots_.clear();
   near_wall_.assign(slots, 0);
   lists_.assign(slots * list_capacity_, nowhere_);
   list_size_.assign(slots, 0);
@@ -65,7 +68,7 @@ void TiledPacking::lay_out(const std::vector<Grain>& grains, const Container& co
   size_ = 0;
   for (const Grain& grain : grains) {
     const std::uint32_t slot =
-        place(cell_of(grain.position.x(), grain.position.y(), grain.position.z()), grain);
+        place(cell_of(grain.position), grain);
     if (slot == nowhere_) {
       capacity_ *= 2;
       lay_out(grains, container);
@@ -80,20 +83,19 @@ int TiledPacking::cell_coordinate(double position, double low, int n) const {
   return cell < 0.0 ? 0 : cell >= n ? n - 1 : static_cast<int>(cell);
 }
 
-std::uint32_t TiledPacking::cell_of(double x, double y, double z) const {
-  return static_cast<std::uint32_t>((cell_coordinate(z, low_.z(), nz_) * ny_ + cell_coordinate(y, low_.y(), ny_)) *
+std::uint32_t TiledPacking::cell_of(const Vector3& at) const {
+  return static_cast<std::uint32_t>((cell_coordinate(at.z(), low_.z(), nz_) * ny_ + cell_coordinate(at.y(), low_.y(), ny_)) *
                                         nx_ +
-                                    cell_coordinate(x, low_.x(), nx_));
+                                    cell_coordinate(at.x(), low_.x(), nx_));
 }
 
 std::uint32_t TiledPacking::place(std::uint32_t cell, const Grain& grain) {
   for (std::uint32_t slot = cell * capacity_; slot < (cell + 1) * capacity_; ++slot) {
     if (ids_[slot] >= 0) continue;
     ids_[slot] = grain.id;
-    x_[slot] = grain.position.x();
-    y_[slot] = grain.position.y();
-    z_[slot] = grain.position.z();
+    points_[slot] = {grain.position.x(), grain.position.y(), grain.position.z(), 0.0};
     held_[slot] = grain.held ? 1 : 0;
+    if (grain.held) held_slots_.push_back(slot);
     ++size_;
     return slot;
   }
@@ -102,8 +104,7 @@ std::uint32_t TiledPacking::place(std::uint32_t cell, const Grain& grain) {
 
 void TiledPacking::vacate(std::uint32_t slot) {
   ids_[slot] = -1;
-  x_[slot] = y_[slot] = z_[slot] = infinity;
-  reference_x_[slot] = reference_y_[slot] = reference_z_[slot] = infinity;
+  points_[slot] = references_[slot] = nobody;
   held_[slot] = near_wall_[slot] = 0;
   --size_;
 }
@@ -111,9 +112,7 @@ void TiledPacking::vacate(std::uint32_t slot) {
 std::vector<Grain> TiledPacking::grains() const {
   std::vector<Grain> all;
   all.reserve(size_);
-  for (std::uint32_t slot = 0; slot < nowhere_; ++slot)
-    if (ids_[slot] >= 0) all.push_back(grain(slot));
-  std::sort(all.begin(), all.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
+  visit_grains([&](const Grain& grain) { all.push_back(grain); });
   return all;
 }
 
@@ -143,40 +142,49 @@ void TiledPacking::find_rows(const Vector3& point, double reach) {
 }
 
 int TiledPacking::displace(const Move& move, double radius, double influence) {
-  const double by[3] = {quantum_.round(-influence * move.step.x()), quantum_.round(-influence * move.step.y()),
-                        quantum_.round(-influence * move.step.z())};
+  const Point by = {quantum_.round(-influence * move.step.x()), quantum_.round(-influence * move.step.y()),
+                             quantum_.round(-influence * move.step.z()), 0.0};
+  const Point middle = {move.middle.x(), move.middle.y(), move.middle.z(), 0.0};
   find_rows(move.middle, radius + half_skin_);
   int moved = 0;
   for (const Row& row : rows_) {
-    const std::uint32_t first = row.first * capacity_;
-    moved += kernels_.displace(x_.data() + first, y_.data() + first, z_.data() + first, (row.last - row.first) * capacity_,
-                            move.middle.data(), radius * radius, by);
+    moved += kernels_.displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middle,
+                               radius, by);
     for (std::uint32_t cell = row.first; cell < row.last; ++cell) {
       ++account_[cell];
       touched_[cell] = 1;
     }
   }
+  // The kernel knows no obstacles; they are where they were listed.
+  for (const std::uint32_t slot : held_slots_) {
+    if (position(slot) == reference(slot)) continue;
+    points_[slot] = references_[slot];
+    --moved;
+  }
   return moved;
 }
 
-void TiledPacking::update_lists(const Container& container) {
+void TiledPacking::find_wandered() {
   wandered_.clear();
-  for (std::uint32_t cell = 0; cell < cells(); ++cell) {
-    if (!touched_[cell]) continue;
-    touched_[cell] = 0;
+  // A few cells at a time: mostly nobody in them has wandered.
+  constexpr std::uint32_t batch = 8;
+  for (std::uint32_t cell = 0; cell < cells(); cell += batch) {
+    const std::uint32_t last = std::min(cell + batch, cells());
+    if (std::find(touched_.begin() + cell, touched_.begin() + last, 1) == touched_.begin() + last) continue;
+    std::fill(touched_.begin() + cell, touched_.begin() + last, 0);
     const std::uint32_t first = cell * capacity_;
-    if (!kernels_.any_beyond(x_.data() + first, y_.data() + first, z_.data() + first, reference_x_.data() + first,
-                      reference_y_.data() + first, reference_z_.data() + first, capacity_, half_skin_ * half_skin_))
+    if (!kernels_.any_beyond(points_.data() + first, references_.data() + first, last * capacity_ - first, half_skin_))
       continue;
-    for (std::uint32_t slot = first; slot < first + capacity_; ++slot) {
-      const double dx = x_[slot] - reference_x_[slot], dy = y_[slot] - reference_y_[slot],
-                   dz = z_[slot] - reference_z_[slot];
-      if (dx * dx + dy * dy + dz * dz > half_skin_ * half_skin_) wandered_.push_back(slot);
-    }
+    for (std::uint32_t slot = first; slot < last * capacity_; ++slot)
+      if ((position(slot) - reference(slot)).squaredNorm() > half_skin_ * half_skin_) wandered_.push_back(slot);
   }
+}
+
+void TiledPacking::update_lists(const Container& container) {
+  find_wandered();
   for (std::uint32_t slot : wandered_) {
     unlist(slot);
-    const std::uint32_t cell = cell_of(x_[slot], y_[slot], z_[slot]);
+    const std::uint32_t cell = cell_of(position(slot));
     if (cell != slot / capacity_) {
       const std::uint32_t to = place(cell, grain(slot));
       if (to == nowhere_) {
@@ -202,30 +210,37 @@ void TiledPacking::unlist(std::uint32_t slot) {
     own[k] = nowhere_;
   }
   list_size_[slot] = 0;
-  reference_x_[slot] = infinity;
+  references_[slot] = nobody;
 }
 
 void TiledPacking::list(std::uint32_t slot, const Container& container) {
-  const Vector3 at(x_[slot], y_[slot], z_[slot]);
+  const Vector3 at = position(slot);
   const double reach = diameter_ + 2.0 * half_skin_;
-  reference_x_[slot] = infinity;  // do not find oneself
+  references_[slot] = nobody;  // do not find oneself
   find_rows(at, reach);
   found_.clear();
   for (const Row& row : rows_)
     for (std::uint32_t j = row.first * capacity_; j < row.last * capacity_; ++j) {
-      const double dx = reference_x_[j] - at.x(), dy = reference_y_[j] - at.y(), dz = reference_z_[j] - at.z();
-      if (dx * dx + dy * dy + dz * dz < reach * reach) found_.push_back(j);
+      if ((reference(j) - at).squaredNorm() < reach * reach) found_.push_back(j);
     }
   for (const std::uint32_t j : found_) {
     add_neighbour(slot, j);
     add_neighbour(j, slot);
   }
-  reference_x_[slot] = at.x();
-  reference_y_[slot] = at.y();
-  reference_z_[slot] = at.z();
+  references_[slot] = points_[slot];
+  mark_near_wall(slot, container);
+}
+
+void TiledPacking::mark_near_wall(std::uint32_t slot, const Container& container) {
+  // Where it was listed: the mark holds for as long as the list.
   WallContacts contacts;
-  container.contacts(at, 0.5 * diameter_ + half_skin_, contacts);
+  container.contacts(reference(slot), 0.5 * diameter_ + half_skin_, contacts);
   near_wall_[slot] = contacts.begin() != contacts.end() ? 1 : 0;
+}
+
+void TiledPacking::mark_near_walls(const Container& container) {
+  for (std::uint32_t slot = 0; slot < nowhere_; ++slot)
+    if (ids_[slot] >= 0) mark_near_wall(slot, container);
 }
 
 void TiledPacking::add_neighbour(std::uint32_t slot, std::uint32_t neighbour) {
@@ -244,15 +259,11 @@ void TiledPacking::add_neighbour(std::uint32_t slot, std::uint32_t neighbour) {
 
 void TiledPacking::select_due_cells(int due) {
   due_cells_.clear();
-  for (int iz = 0; iz < nz_; ++iz)
-    for (int iy = 0; iy < ny_; ++iy)
-      for (int ix = 0; ix < nx_; ++ix) {
-        const std::uint32_t cell = static_cast<std::uint32_t>((iz * ny_ + iy) * nx_ + ix);
-        if (account_[cell] >= due) due_cells_.push_back(cell);
-      }
+  for (std::uint32_t cell = 0; cell < cells(); ++cell)
+    if (account_[cell] >= due) due_cells_.push_back(cell);
 }
 
-std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, int due, int relief,
+std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, int due, int relief, double deepest,
                                 const Container& container) {
   select_due_cells(due);
   if (due_cells_.empty()) return 0;
@@ -263,26 +274,20 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, int due,
     for (std::uint32_t slot = cell * capacity_; slot < (cell + 1) * capacity_; ++slot)
       if (ids_[slot] >= 0 && !held_[slot]) active_.push_back(slot);
   }
-  const std::size_t n = active_.size();
-  while (active_.size() % kernels::lanes != 0) active_.push_back(nowhere_);
-  push_x_.resize(active_.size());
-  push_y_.resize(active_.size());
-  push_z_.resize(active_.size());
-  const kernels::Slots arrays{x_.data(),      y_.data(),       z_.data(), lists_.data(), list_capacity_,
-                          diameter_ * diameter_, parameters.pair_share(), 1.5 * std::ldexp(quantum_.length(), 52)};
-  for (std::size_t k = 0; k < active_.size(); k += kernels::lanes) {
-    std::uint32_t longest = 0;
-    for (int l = 0; l < kernels::lanes; ++l) longest = std::max<std::uint32_t>(longest, list_size_[active_[k + l]]);
-    kernels_.push_off_neighbours(arrays, active_.data() + k, longest, push_x_.data() + k, push_y_.data() + k, push_z_.data() + k);
-  }
-  active_.resize(n);
+  pushes_.resize(active_.size());
+  kernels_.push_off_neighbours(points_.data(), active_.data(), active_.size(),
+                               {lists_.data(), list_size_.data(), list_capacity_},
+                               {diameter_, parameters.pair_share(), quantum_.shift()}, pushes_.data());
   push_off_walls(container, parameters.fixed_share());
-  for (std::size_t k = 0; k < n; ++k) {
-    x_[active_[k]] += push_x_[k];
-    y_[active_[k]] += push_y_[k];
-    z_[active_[k]] += push_z_[k];
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    Point& point = points_[active_[k]];
+    point.x += pushes_[k].x;
+    point.y += pushes_[k].y;
+    point.z += pushes_[k].z;
+    // 1 - r^2/d^2 is twice the overlap in diameters, to first order.
+    if (pushes_[k].depth > 2.0 * deepest) account_[active_[k] / capacity_] = due;
   }
-  return n;
+  return active_.size();
 }
 
 void TiledPacking::push_off_walls(const Container& container, double share) {
@@ -291,21 +296,26 @@ void TiledPacking::push_off_walls(const Container& container, double share) {
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const std::uint32_t slot = active_[k];
     if (!near_wall_[slot]) continue;
-    container.contacts({x_[slot], y_[slot], z_[slot]}, radius, contacts);
+    container.contacts(position(slot), radius, contacts);
     for (const WallContact& contact : contacts) {
       const Vector3 off = share * (radius - contact.distance) * contact.normal;
-      push_x_[k] += quantum_.round(off.x());
-      push_y_[k] += quantum_.round(off.y());
-      push_z_[k] += quantum_.round(off.z());
+      pushes_[k].x += quantum_.round(off.x());
+      pushes_[k].y += quantum_.round(off.y());
+      pushes_[k].z += quantum_.round(off.z());
     }
   }
+}
+
+void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit) const {
+  for (std::uint32_t slot = 0; slot < nowhere_; ++slot)
+    if (ids_[slot] >= 0) visit(grain(slot));
 }
 
 void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {
   const int layers = cell_coordinate(outlet + half_skin_, low_.z(), nz_) + 1;
   const std::uint32_t last = static_cast<std::uint32_t>(layers * ny_ * nx_) * capacity_;
   for (std::uint32_t slot = 0; slot < last; ++slot) {
-    if (ids_[slot] < 0 || z_[slot] >= outlet || held_[slot]) continue;
+    if (ids_[slot] < 0 || points_[slot].z >= outlet || held_[slot]) continue;
     drained.push_back(grain(slot));
     unlist(slot);
     vacate(slot);
@@ -318,17 +328,16 @@ Overlap TiledPacking::largest_overlap() const {
   for (std::uint32_t i = 0; i < nowhere_; ++i)
     for (std::uint32_t k = 0; k < list_size_[i]; ++k) {
       const std::uint32_t j = lists_[static_cast<std::size_t>(i) * list_capacity_ + k];
-      const double dx = x_[i] - x_[j], dy = y_[i] - y_[j], dz = z_[i] - z_[j];
-      const double squared = dx * dx + dy * dy + dz * dz;
+      const double squared = (position(i) - position(j)).squaredNorm();
       if (squared >= least) continue;
       least = squared;
-      largest = {diameter_ - std::sqrt(squared), std::min(ids_[i], ids_[j]), std::max(ids_[i], ids_[j])};
+      largest = {1.0 - std::sqrt(squared) / diameter_, std::min(ids_[i], ids_[j]), std::max(ids_[i], ids_[j])};
     }
   return largest;
 }
 
 std::size_t TiledPacking::memory() const {
-  return x_.capacity() * (6 * sizeof(double) + sizeof(std::int64_t) + 3) + lists_.capacity() * sizeof(std::uint32_t) +
+  return points_.capacity() * (2 * sizeof(Point) + sizeof(std::int64_t) + 3) + lists_.capacity() * sizeof(std::uint32_t) +
          account_.capacity() * 5;
 }
 

@@ -2,53 +2,88 @@
 #include "spot/windowed_drainage.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "spot/errors.hpp"
 
 namespace spot {
 
+namespace {
+
+/// One sweep takes back about half of every overlap, so a quarter of its mean square is left.
+constexpr int relief = 4;
+
+/// Most sweeps of a cell in one window; what is left over waits for the next.
+constexpr int most_sweeps = 8;
+
+/// A cell with an overlap deeper than this, in diameters, is due whatever its account says. DEM's deepest is 0.013.
+constexpr double deepest_overlap = 0.02;
+
+constexpr double removed = std::numeric_limits<double>::infinity();
+
+int moves_until_due(const SpotParameters& spots, double tolerance) {
+  if (!(tolerance > 0.0) || !std::isfinite(tolerance))
+    throw InvalidParameter(message("relaxation tolerance is ", tolerance, " but must be positive and finite"));
+  const double displacement = spots.influence * spots.step_width;
+  return static_cast<int>(std::clamp(12.0 * tolerance * tolerance / (displacement * displacement), 1.0, 1e9));
+}
+
+double positive_window(double window) {
+  if (!(window > 0.0) || !std::isfinite(window))
+    throw InvalidParameter(message("window is ", window, " but must be positive and finite"));
+  return window;
+}
+
+}  // namespace
+
 WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
-                                   const DrainageLimits& limits, const WindowParameters& window,
+                                   const DrainageLimits& limits, double window,
                                    std::shared_ptr<const Container> container, double diameter, double extent,
                                    const std::vector<Grain>& grains)
-    : parameters_(spots),
-      relaxation_(relaxation),
-      limits_(limits),
-      window_(window),
-      container_(std::move(container)),
+    : Drainage(spots, relaxation, limits, std::move(container), diameter),
+      window_(positive_window(window)),
+      due_(moves_until_due(spots, relaxation.tolerance * diameter)),
       packing_(diameter, extent, limits.outlet, grains, *container_),
       walk_(spots, *container_),
-      next_birth_(walk_.time_before_birth(0)) {}
+      next_birth_(walk_.time_before_birth(0)) {
+  require_valid_start();
+}
 
 void WindowedDrainage::advance_to(double time) {
-  while (static_cast<double>(windows_ + 1) * window_.window <= time * (1.0 + 1e-12)) {
-    const double until = static_cast<double>(++windows_) * window_.window;
+  // A time that was meant to be a whole number of windows may be off by rounding.
+  while (static_cast<double>(windows_ + 1) * window_ <= time * (1.0 + 1e-12)) {
+    const double until = static_cast<double>(++windows_) * window_;
     give_birth(until);
     walk(until);
-    packing_.update_lists(*container_);
+    packing_.update_lists(container());
     relax();
+    const std::size_t drained_before = drained_.size();
     packing_.take_out_below(limits_.outlet, drained_);
+    counters_.drained += static_cast<std::int64_t>(drained_.size() - drained_before);
   }
 }
 
 void WindowedDrainage::give_birth(double until) {
   while (next_birth_ <= until) {
-    spots_.push_back(walk_.birth(born_, next_birth_, *container_));
+    spots_.push_back(walk_.birth(born_, next_birth_, container()));
     next_step_.push_back(spots_.back().next_step);
     next_birth_ += walk_.time_before_birth(++born_);
   }
 }
 
 void WindowedDrainage::walk(double until) {
-  const double inside = container_->orifice().centre.z() + parameters_.radius;
+  const double inside = container().orifice().centre.z() + parameters_.radius;
   for (std::size_t k = 0; k < spots_.size(); ++k) {
     while (next_step_[k] <= until) {
-      const Move move = walk_.step(spots_[k], *container_);
+      const Move move = walk_.step(spots_[k], container());
       next_step_[k] = spots_[k].next_step;
       const int moved = packing_.displace(move, parameters_.radius, parameters_.influence);
       ++counters_.moves;
       counters_.grains_moved += moved;
       if (moved == 0 && move.middle.z() > inside) {
-        next_step_[k] = std::numeric_limits<double>::infinity();
+        // Out at the top of the packing.
+        next_step_[k] = removed;
         ++removed_;
       }
     }
@@ -59,7 +94,7 @@ void WindowedDrainage::walk(double until) {
 void WindowedDrainage::drop_removed() {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < spots_.size(); ++k) {
-    if (next_step_[k] == std::numeric_limits<double>::infinity()) continue;
+    if (next_step_[k] == removed) continue;
     spots_[kept] = spots_[k];
     next_step_[kept++] = next_step_[k];
   }
@@ -68,20 +103,38 @@ void WindowedDrainage::drop_removed() {
   removed_ = 0;
 }
 
+std::vector<Spot> WindowedDrainage::spots() const {
+  std::vector<Spot> live;
+  for (std::size_t k = 0; k < spots_.size(); ++k)
+    if (next_step_[k] != removed) live.push_back(spots_[k]);
+  return live;
+}
+
 void WindowedDrainage::relax() {
-  for (int round = 0; round < window_.rounds; ++round) {
-    const std::size_t swept = packing_.sweep(relaxation_, window_.due, window_.relief, *container_);
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    const std::size_t swept = packing_.sweep(relaxation_parameters_, due_, relief, deepest_overlap, container());
     if (swept == 0) return;
-    counters_.sweeps += static_cast<std::int64_t>(swept);
-    packing_.update_lists(*container_);
+    ++counters_.sweeps;
+    counters_.grains_swept += static_cast<std::int64_t>(swept);
+    packing_.update_lists(container());
   }
 }
 
-std::vector<Grain> WindowedDrainage::take_drained() {
-  std::vector<Grain> drained;
-  drained.swap(drained_);
-  counters_.drained += static_cast<std::int64_t>(drained.size());
-  return drained;
+void WindowedDrainage::replace_grains(const std::vector<Grain>& grains) {
+  // All or nothing: what is refused leaves everything as it was.
+  TiledPacking packing(packing_.diameter(), packing_.extent(), limits_.outlet, grains, container());
+  std::swap(packing, packing_);
+  try {
+    require_inside();
+  } catch (...) {
+    std::swap(packing, packing_);
+    throw;
+  }
+}
+
+void WindowedDrainage::replace_container(std::shared_ptr<const Container> container) {
+  container_ = std::move(container);
+  packing_.mark_near_walls(*container_);
 }
 
 }  // namespace spot

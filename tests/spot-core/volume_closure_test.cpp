@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "scenes.hpp"
-#include "spot/drainage.hpp"
+#include "spot/time_ordered_drainage.hpp"
 
 namespace {
 
-using spot::Drainage;
+using spot::TimeOrderedDrainage;
 using spot::DrainageLimits;
 using spot::Grain;
 using spot::Packing;
@@ -41,7 +41,7 @@ TEST(VolumeClosureSlow, FluxThroughEveryHeightEqualsOutflowAndWhatTheSpotsCarry)
   SpotParameters spots = scenes::paper_spots();
   spots.speed = 6.4;
   const auto silo = scenes::small_silo(8.0, 4.0);
-  Drainage drainage(spots, {}, DrainageLimits{-1.0}, silo,
+  TimeOrderedDrainage drainage(spots, {}, DrainageLimits{-1.0}, silo,
                     Packing(1.0, 100.0, scenes::dense_grains({-7.5, -3.5, 0.5}, {7.5, 3.5, 30.0}, 0.01, 1)));
 
   // The same moves again, one at a time, to know how many grains each of them moved.

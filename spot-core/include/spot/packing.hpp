@@ -25,7 +25,7 @@ struct Grain {
 
 /// The largest overlap of two grains and whose it is.
 struct Overlap {
-  double depth = 0.0;  ///< diameter minus distance (length); 0 when no two grains overlap
+  double depth = 0.0;  ///< 1 - distance / diameter; 0 when no two grains overlap
   std::int64_t first = 0, second = 0;
 };
 
@@ -44,6 +44,7 @@ class Packing {
   Packing(double diameter, double extent, const std::vector<Grain>& grains);
 
   double diameter() const { return diameter_; }
+  double extent() const { return extent_; }
   const Quantum& quantum() const { return quantum_; }
   std::size_t size() const { return ids_.size() - removed_; }
 
@@ -60,6 +61,9 @@ class Packing {
   void update_lists(const Container& container) {
     if (!wandered_.empty()) list_wandered(container);
   }
+
+  /// Marks the grains near walls anew, as after the walls changed.
+  void mark_near_walls(const Container& container);
 
   /// Number of indices; removed grains keep theirs for a while.
   std::size_t slots() const { return ids_.size(); }
@@ -112,10 +116,11 @@ class Packing {
   void sort(const Container& container);
   void unlist(std::uint32_t i);
   void list(std::uint32_t i, const Container& container);
+  void mark_near_wall(std::uint32_t i, const Container& container);
   void add_neighbour(std::uint32_t i, std::uint32_t j);
   void lengthen_lists();
 
-  double diameter_;
+  double diameter_, extent_;
   Quantum quantum_;
   double half_skin_;
   std::vector<std::int64_t> ids_;

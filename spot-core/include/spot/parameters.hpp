@@ -43,7 +43,9 @@ struct RelaxationParameters {
   double alpha = 0.8;                                              ///< share of an overlap taken back in one sweep
   RelaxationStrength strength = RelaxationStrength::half_each;     ///< who moves how far
   double shell = 1.0;  ///< grains farther than R_s + shell diameters from the step's middle are held fixed
-  int every = 1;       ///< relax after every so many moves of all spots; 0: never
+  int every = 1;       ///< time-ordered driver: relax after every so many moves of all spots; 0: never
+  /// Windowed driver: rms overlap, in diameters, that moves may build up between sweeps.
+  double tolerance = 1.5e-3;
 
   /// Share of the overlap by which a movable grain moves against another movable grain.
   double pair_share() const { return strength == RelaxationStrength::half_each ? 0.5 * alpha : alpha; }

@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "spot/container.hpp"
 #include "spot/displacement.hpp"
 #include "spot/packing.hpp"
 #include "spot/parameters.hpp"
+#include "spot/point.hpp"
 #include "spot/quantum.hpp"
 
 namespace spot {
@@ -30,7 +32,10 @@ class TiledPacking {
 
   double diameter() const { return diameter_; }
   std::size_t size() const { return size_; }
-  std::vector<Grain> grains() const;
+  double extent() const { return extent_; }
+
+  /// Calls visit(grain) for all grains, in no particular order.
+  void visit_grains(const std::function<void(const Grain&)>& visit) const;
 
   /// Moves the grains within `radius` of the move's middle, as displace() does; returns how many. Cells that the
   /// move may have reached are charged one move.
@@ -39,9 +44,14 @@ class TiledPacking {
   /// Lists anew the grains that have wandered half a skin, as far as moves or sweeps have touched their cells.
   void update_lists(const Container& container);
 
-  /// One sweep over the cells that are due, those charged with `due` moves or more and their charged neighbours.
-  /// Their accounts are divided by `relief`. Returns the number of grains swept, 0 when no cell was due.
-  std::size_t sweep(const RelaxationParameters& parameters, int due, int relief, const Container& container);
+  /// One sweep over the cells that are due, those charged with `due` moves or more. Their accounts are divided by
+  /// `relief`; a cell in which a grain was overlapped by more than `deepest` diameters stays due.
+  /// Returns the number of grains swept, 0 when no cell was due.
+  std::size_t sweep(const RelaxationParameters& parameters, int due, int relief, double deepest,
+                    const Container& container);
+
+  /// Marks the grains near walls anew, as after the walls changed.
+  void mark_near_walls(const Container& container);
 
   /// Takes out the grains with centres below the outlet and adds them to `drained`.
   void take_out_below(double outlet, std::vector<Grain>& drained);
@@ -54,20 +64,23 @@ class TiledPacking {
     std::uint32_t first, last;  // slots
   };
 
+  std::vector<Grain> grains() const;
   void lay_out(const std::vector<Grain>& grains, const Container& container);
   int cell_coordinate(double position, double low, int n) const;
-  std::uint32_t cell_of(double x, double y, double z) const;
+  std::uint32_t cell_of(const Vector3& at) const;
   void find_rows(const Vector3& point, double reach);
   std::uint32_t place(std::uint32_t cell, const Grain& grain);
   void vacate(std::uint32_t slot);
-  void relocate(std::uint32_t from, std::uint32_t to);
   void unlist(std::uint32_t slot);
   void list(std::uint32_t slot, const Container& container);
+  void mark_near_wall(std::uint32_t slot, const Container& container);
   void add_neighbour(std::uint32_t slot, std::uint32_t neighbour);
-  void replace_neighbour(std::uint32_t slot, std::uint32_t neighbour, std::uint32_t by);
+  void find_wandered();
   void select_due_cells(int due);
   void push_off_walls(const Container& container, double share);
-  Grain grain(std::uint32_t slot) const { return {ids_[slot], {x_[slot], y_[slot], z_[slot]}, held_[slot] != 0}; }
+  Vector3 position(std::uint32_t slot) const { return {points_[slot].x, points_[slot].y, points_[slot].z}; }
+  Vector3 reference(std::uint32_t slot) const { return {references_[slot].x, references_[slot].y, references_[slot].z}; }
+  Grain grain(std::uint32_t slot) const { return {ids_[slot], position(slot), held_[slot] != 0}; }
   std::uint32_t cells() const { return static_cast<std::uint32_t>(account_.size()); }
 
   double diameter_, extent_;
@@ -81,10 +94,10 @@ class TiledPacking {
   std::uint32_t nowhere_ = 0;  // the slot that is always empty
   std::size_t size_ = 0;
 
-  std::vector<double> x_, y_, z_;
-  std::vector<double> reference_x_, reference_y_, reference_z_;
+  std::vector<Point> points_, references_;
   std::vector<std::int64_t> ids_;  // -1 in empty slots
   std::vector<char> held_, near_wall_;
+  std::vector<std::uint32_t> held_slots_;  // obstacles never leave their slots
   std::vector<std::uint32_t> lists_;
   std::vector<std::uint8_t> list_size_;
   std::vector<std::int32_t> account_;
@@ -93,7 +106,7 @@ class TiledPacking {
   // Kept between calls to save allocations.
   std::vector<Row> rows_;
   std::vector<std::uint32_t> wandered_, found_, due_cells_, active_;
-  std::vector<double> push_x_, push_y_, push_z_;
+  std::vector<Point> pushes_;
 };
 
 }  // namespace spot

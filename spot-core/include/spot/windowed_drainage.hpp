@@ -5,31 +5,34 @@
 #include <vector>
 
 #include "spot/drainage.hpp"
-#include "spot/spot_walk.hpp"
 #include "spot/tiled_packing.hpp"
 
 namespace spot {
 
-/// When cells are relaxed in the windowed driver.
-struct WindowParameters {
-  double window;     ///< time of one window
-  int due = 20;      ///< moves into a cell after which it is relaxed
-  int relief = 4;    ///< a sweep divides a cell's account by this
-  int rounds = 8;    ///< most sweeps in one window
-};
-
-/// The windowed driver: per window of time all spots walk and displace, then the cells that are due are relaxed.
-class WindowedDrainage {
+/// The fast driver. Per window of time all spots walk and displace their blocks, in order of birth; then the cells in
+/// which that has used up the tolerance are relaxed, as often as it takes.
+///
+/// How much a cell needs is kept in its account, the number of moves that reached into it: n of them, each enclosing one
+/// grain of a touching pair or the other with probability 1/4, add w^2 dx^2 n / 12 to the mean square overlap along
+/// the line of centres. A cell is due when that exceeds the tolerance squared.
+class WindowedDrainage : public Drainage {
  public:
+  /// `window`: in the units of the rates. Throws as TimeOrderedDrainage does, and InvalidParameter unless window and
+  /// relaxation.tolerance are positive.
   WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
-                   const WindowParameters& window, std::shared_ptr<const Container> container, double diameter,
-                   double extent, const std::vector<Grain>& grains);
+                   double window, std::shared_ptr<const Container> container, double diameter, double extent,
+                   const std::vector<Grain>& grains);
 
-  void advance_to(double time);
-  const TiledPacking& packing() const { return packing_; }
-  const std::vector<Spot>& spots() const { return spots_; }
-  const Counters& counters() const { return counters_; }
-  std::vector<Grain> take_drained();
+  void advance_to(double time) override;
+  void replace_grains(const std::vector<Grain>& grains) override;
+  void replace_container(std::shared_ptr<const Container> container) override;
+  void visit_grains(const std::function<void(const Grain&)>& visit) const override { packing_.visit_grains(visit); }
+  std::vector<Spot> spots() const override;
+  Overlap largest_overlap() override { return packing_.largest_overlap(); }
+  std::size_t memory() const override { return packing_.memory(); }
+
+  /// Moves into a cell after which it is relaxed.
+  int due() const { return due_; }
 
  private:
   void give_birth(double until);
@@ -37,11 +40,8 @@ class WindowedDrainage {
   void relax();
   void drop_removed();
 
-  SpotParameters parameters_;
-  RelaxationParameters relaxation_;
-  DrainageLimits limits_;
-  WindowParameters window_;
-  std::shared_ptr<const Container> container_;
+  double window_;
+  int due_;
   TiledPacking packing_;
   SpotWalk walk_;
   std::vector<Spot> spots_;        // in order of birth
@@ -49,8 +49,6 @@ class WindowedDrainage {
   std::size_t removed_ = 0;
   std::int64_t born_ = 0, windows_ = 0;
   double next_birth_;
-  Counters counters_;
-  std::vector<Grain> drained_;
 };
 
 }  // namespace spot

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A project outside that uses the installed library.
-#include <spot/drainage.hpp>
+#include <spot/time_ordered_drainage.hpp>
 
 int main() {
   spot::SpotParameters spots;
@@ -12,7 +12,7 @@ int main() {
   spots.injection_rate = 363.0;
   std::shared_ptr<const spot::Container> silo =
       spot::cylinder_silo(0.0, 0.0, 8.0, spot::Orifice{{0.0, 0.0, 0.0}, 4.0}, spot::SpotBuffers{1.0, 2.6});
-  spot::Drainage drainage(spots, spot::RelaxationParameters(), spot::DrainageLimits{-1.0}, silo,
+  spot::TimeOrderedDrainage drainage(spots, spot::RelaxationParameters(), spot::DrainageLimits{-1.0}, silo,
                           spot::Packing(1.0, 100.0, {{1, {0.0, 0.0, 0.5}}}));
   drainage.advance_to(2.0);
   return drainage.counters().moves > 0 ? 0 : 1;

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "spot/drainage.hpp"
+#include "spot/packing.hpp"
+#include "spot/relaxation.hpp"
+#include "spot/spot_population.hpp"
+
+namespace spot {
+
+/// The strictly time-ordered driver of 2006, the reference: every step of every spot, in order of time, displaces its
+/// block of grains and is followed by a relaxation of the grains around it.
+class TimeOrderedDrainage : public Drainage {
+ public:
+  /// Throws InvalidParameter, InvalidContainer or InvalidPacking, naming the grain, if the start is not
+  /// valid: grains outside the container or overlapping too deeply, an outlet that newborn spots do not reach.
+  TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                      std::shared_ptr<const Container> container, Packing packing);
+
+  void advance_to(double time) override;
+  void replace_grains(const std::vector<Grain>& grains) override;
+  void replace_container(std::shared_ptr<const Container> container) override;
+  void visit_grains(const std::function<void(const Grain&)>& visit) const override;
+  std::vector<Spot> spots() const override { return population_.spots(); }
+  Overlap largest_overlap() override;
+  std::size_t memory() const override { return packing_.memory(); }
+
+  const Packing& packing() const { return packing_; }
+
+ private:
+  void carry_out(const Move& move);
+  void take_out_drained();
+
+  Packing packing_;
+  SpotPopulation population_;
+  Relaxation relaxation_;
+  std::vector<std::uint32_t> near_;  // grains around a move; kept to save allocations
+};
+
+}  // namespace spot
