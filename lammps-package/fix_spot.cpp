@@ -350,7 +350,7 @@ void FixSpot::list_spots()
 /// Between runs a region may be deleted, and finding the overlap may need the walls: find it while they are there.
 void FixSpot::post_run()
 {
-  if (model->drainage) model->overlap_after_run = model->drainage->largest_overlap().depth;
+  if (model->drainage) model->overlap_after_run = largest_overlap();
 }
 
 double FixSpot::compute_vector(int which)
@@ -363,9 +363,15 @@ double FixSpot::compute_vector(int which)
     case 2: return static_cast<double>(counters.drained);
     case 3: return model->drained_mass;
     case 4: return mean_outflow();
-    case 5: return update->whichflag ? model->drainage->largest_overlap().depth : model->overlap_after_run;
+    case 5: return update->whichflag ? largest_overlap() : model->overlap_after_run;
     default: return static_cast<double>(counters.sweeps);
   }
+}
+
+/// In distance units.
+double FixSpot::largest_overlap() const
+{
+  return model->drainage->largest_overlap().depth * model->diameter;
 }
 
 /// Grains a time, over the last `average` steps (fewer when no more were done).

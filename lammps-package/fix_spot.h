@@ -51,6 +51,7 @@ class FixSpot : public Fix {
   void write_grains();
   int local_index(std::int64_t) const;
   void list_spots();
+  double largest_overlap() const;
   double mean_outflow() const;
 };
 

@@ -32,7 +32,7 @@ struct SpotCommand {
   std::optional<spot::Orifice> orifice;
   spot::SpotParameters spots;
   spot::RelaxationParameters relaxation;
-  bool time_ordered = false;  // the driver of 2006 rather than the windowed one
+  bool time_ordered = true;  // the driver of 2006, not the windowed one
   std::optional<double> diffusion_length;
   std::optional<double> outlet;
   std::optional<double> side_buffer, base_buffer;

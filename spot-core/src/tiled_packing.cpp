@@ -12,8 +12,6 @@ namespace spot {
 
 namespace {
 
-const kernels::Kernels& kernels_ = kernels::best();
-
 /// Where empty slots are: so far away that nothing reaches them, and finite, because kernels multiply by zero.
 constexpr double far_away = 0x1p+500;
 constexpr Point nobody = {far_away, far_away, far_away, 0.0};
@@ -28,7 +26,8 @@ constexpr double edge_in_diameters = 1.5;
 
 TiledPacking::TiledPacking(double diameter, double extent, double outlet, const std::vector<Grain>& grains,
                            const Container& container)
-    : diameter_(diameter),
+    : kernels_(&kernels::best()),
+      diameter_(diameter),
       extent_(extent),
       quantum_(diameter, extent),
       half_skin_(0.5 * skin_in_diameters * diameter),
@@ -148,7 +147,7 @@ int TiledPacking::displace(const Move& move, double radius, double influence) {
   find_rows(move.middle, radius + half_skin_);
   int moved = 0;
   for (const Row& row : rows_) {
-    moved += kernels_.displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middle,
+    moved += kernels_->displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middle,
                                radius, by);
     for (std::uint32_t cell = row.first; cell < row.last; ++cell) {
       ++account_[cell];
@@ -173,7 +172,7 @@ void TiledPacking::find_wandered() {
     if (std::find(touched_.begin() + cell, touched_.begin() + last, 1) == touched_.begin() + last) continue;
     std::fill(touched_.begin() + cell, touched_.begin() + last, 0);
     const std::uint32_t first = cell * capacity_;
-    if (!kernels_.any_beyond(points_.data() + first, references_.data() + first, last * capacity_ - first, half_skin_))
+    if (!kernels_->any_beyond(points_.data() + first, references_.data() + first, last * capacity_ - first, half_skin_))
       continue;
     for (std::uint32_t slot = first; slot < last * capacity_; ++slot)
       if ((position(slot) - reference(slot)).squaredNorm() > half_skin_ * half_skin_) wandered_.push_back(slot);
@@ -275,7 +274,7 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, int due,
       if (ids_[slot] >= 0 && !held_[slot]) active_.push_back(slot);
   }
   pushes_.resize(active_.size());
-  kernels_.push_off_neighbours(points_.data(), active_.data(), active_.size(),
+  kernels_->push_off_neighbours(points_.data(), active_.data(), active_.size(),
                                {lists_.data(), list_size_.data(), list_capacity_},
                                {diameter_, parameters.pair_share(), quantum_.shift()}, pushes_.data());
   push_off_walls(container, parameters.fixed_share());

@@ -131,7 +131,7 @@ def test_before_the_box(tmp_path):
     ("set atom 17 diameter 1.1", ["one diameter, 1", "grain 17 has 1.1"]),
     ("set group all diameter 0", ["no diameter"]),
     ("variable none atom (1e300*1e300)-(1e300*1e300)\nset atom 17 x v_none", ["position of grain 17 is not finite"]),
-    ("set atom 17 z -0.5", ["grain 17 at (", "-0.5) is outside the container"]),
+    ("set atom 17 z -1.5", ["grain 17 at (", "-1.5) is outside the container"]),
     ("delete_atoms group all", ["there are no grains"]),
     ("change_box all triclinic", ["triclinic box"]),
 ], ids=lambda value: value.splitlines()[-1] if isinstance(value, str) else "")

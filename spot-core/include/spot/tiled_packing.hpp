@@ -15,6 +15,10 @@
 
 namespace spot {
 
+namespace kernels {
+struct Kernels;
+}
+
 /// Equal spheres laid out for vector kernels.
 ///
 /// Layout: the cells of a grid, x fastest, have `capacity` slots each; a row of cells is one contiguous range of
@@ -26,7 +30,8 @@ namespace spot {
 /// Every cell keeps an account: how many moves have reached into it since it was relaxed last.
 class TiledPacking {
  public:
-  /// Grains may go down to `outlet`. Throws InvalidPacking as Packing does.
+  /// Grains may go down to `outlet`. Throws InvalidPacking as Packing does, and InvalidParameter if
+  /// the environment variable SPOT_INSTRUCTION_SET names kernels that cannot run here.
   TiledPacking(double diameter, double extent, double outlet, const std::vector<Grain>& grains,
                const Container& container);
 
@@ -83,6 +88,7 @@ class TiledPacking {
   Grain grain(std::uint32_t slot) const { return {ids_[slot], position(slot), held_[slot] != 0}; }
   std::uint32_t cells() const { return static_cast<std::uint32_t>(account_.size()); }
 
+  const kernels::Kernels* kernels_;
   double diameter_, extent_;
   Quantum quantum_;
   double half_skin_;
