@@ -33,9 +33,9 @@ namespace {
 /// Columns of the spots in dump local.
 enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
 
-enum BoundaryKind { PERIODIC = 0, FIXED = 1 };    // as in domain.h
+enum BoundaryKind { PERIODIC = 0, FIXED = 1 };  // as in domain.h
 
-}    // namespace
+}  // namespace
 
 struct FixSpot::Model {
   SpotCommand command;
@@ -44,19 +44,18 @@ struct FixSpot::Model {
   double overlap_after_run = 0.0;
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
-  bigint windows = 0;        // done since the fix was made; the clock of the spots
+  bigint windows = 0;  // done since the fix was made; the clock of the spots
   int windows_per_step = 1;
-  std::unordered_map<tagint, int> local;    // index of a grain in LAMMPS' arrays
-  std::vector<tagint> leaving;              // drained grains that LAMMPS still holds, in increasing order
-  std::deque<bigint> drained_after_step = {0};    // totals over the last command.average steps
-  std::vector<double> spots;                // SpotColumn values, a row a spot
+  std::unordered_map<tagint, int> local;        // index of a grain in LAMMPS' arrays
+  std::vector<tagint> leaving;                  // drained grains that LAMMPS still holds, in increasing order
+  std::deque<bigint> drained_after_step = {0};  // totals over the last command.average steps
+  std::vector<double> spots;                    // SpotColumn values, a row a spot
   std::vector<double *> rows;
 };
 
 /* ---------------------------------------------------------------------- */
 
-FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg) : Fix(instance, narg, arg), model(std::make_unique<Model>())
-{
+FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg) : Fix(instance, narg, arg), model(std::make_unique<Model>()) {
   time_integrate = 1;
   force_reneighbor = 1;
   next_reneighbor = -1;
@@ -92,8 +91,7 @@ int FixSpot::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | END_OF_STEP; 
    checks before every run
 ------------------------------------------------------------------------- */
 
-void FixSpot::check_run()
-{
+void FixSpot::check_run() {
   if (update->whichflag == 2) error->all(FLERR, std::string("fix spot does not work with minimize"));
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, std::string("fix spot does not work with run_style respa"));
@@ -104,11 +102,11 @@ void FixSpot::check_run()
     for (int side = 0; side < 2; ++side)
       if (domain->boundary[axis][side] != FIXED)
         error->all(FLERR, message("fix spot needs 'boundary f f f': the ", side ? "upper" : "lower", " boundary in ",
-                                  "xyz"[axis], " is ", domain->boundary[axis][side] == PERIODIC ? "periodic" : "shrink-wrapped"));
+                                  "xyz"[axis], " is ",
+                                  domain->boundary[axis][side] == PERIODIC ? "periodic" : "shrink-wrapped"));
 }
 
-void FixSpot::choose_window()
-{
+void FixSpot::choose_window() {
   const SpotCommand &command = model->command;
   if (!command.window) {
     // In the windowed driver no spot should go far between two relaxations: 0.016 d is six windows a step of 0.1 d.
@@ -116,23 +114,21 @@ void FixSpot::choose_window()
     model->command.window = command.time_ordered ? update->dt : update->dt / std::ceil(update->dt / longest);
   }
   const double ratio = update->dt / *model->command.window;
-  constexpr double most = 1e9;    // an int holds the number of windows in a step
+  constexpr double most = 1e9;  // an int holds the number of windows in a step
   if (ratio < 0.5 || ratio > most || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
     error->all(FLERR, message("fix spot: timestep ", update->dt, " must be a whole number of windows of ",
                               *model->command.window, ", from 1 to ", most));
   model->windows_per_step = static_cast<int>(std::lround(ratio));
 }
 
-void FixSpot::check_other_fixes()
-{
+void FixSpot::check_other_fixes() {
   int spots = 0;
   for (int i = 0; i < modify->nfix; ++i)
     if (strcmp(modify->fix[i]->style, style) == 0) ++spots;
   if (spots > 1) error->all(FLERR, std::string("only one fix spot can be in use"));
 }
 
-void FixSpot::check_grains()
-{
+void FixSpot::check_grains() {
   if (atom->natoms == 0 || atom->nlocal == 0) {
     // A silo that ran empty is no error, but without a single grain there is no diameter to start from.
     if (!model->drainage) error->all(FLERR, std::string("fix spot: there are no grains"));
@@ -147,12 +143,12 @@ void FixSpot::check_grains()
   for (int i = 0; i < atom->nlocal; ++i)
     if (!std::isfinite(atom->x[i][0]) || !std::isfinite(atom->x[i][1]) || !std::isfinite(atom->x[i][2]))
       error->one(FLERR, message("fix spot: position of grain ", atom->tag[i], " is not finite"));
-  if (!(diameter > 0.0)) error->all(FLERR, std::string("fix spot: the grains have no diameter; use 'set ... diameter'"));
+  if (!(diameter > 0.0))
+    error->all(FLERR, std::string("fix spot: the grains have no diameter; use 'set ... diameter'"));
   model->diameter = diameter;
 }
 
-void FixSpot::init()
-{
+void FixSpot::init() {
   check_run();
   check_other_fixes();
   check_grains();
@@ -169,8 +165,7 @@ void FixSpot::init()
 }
 
 /// LAMMPS drops what is outside its box, so the walls and the outlet must not be.
-void FixSpot::check_box()
-{
+void FixSpot::check_box() {
   const auto require = [this](char axis, double low, double high) {
     const int k = axis - 'x';
     const double slack = 1e-9 * (domain->boxhi[k] - domain->boxlo[k]);
@@ -193,8 +188,7 @@ void FixSpot::check_box()
 }
 
 /// For every run anew: a region can have been deleted or defined again since the last one.
-void FixSpot::make_container()
-{
+void FixSpot::make_container() {
   const SpotCommand &command = model->command;
   const spot::SpotBuffers buffers{*command.side_buffer, *command.base_buffer};
   if (const auto *box = std::get_if<BoxWalls>(&command.walls)) {
@@ -216,8 +210,7 @@ void FixSpot::make_container()
    grains between LAMMPS' arrays and the packing
 ------------------------------------------------------------------------- */
 
-std::vector<spot::Grain> FixSpot::grains_of_lammps() const
-{
+std::vector<spot::Grain> FixSpot::grains_of_lammps() const {
   std::vector<spot::Grain> grains;
   grains.reserve(atom->nlocal);
   for (int i = 0; i < atom->nlocal; ++i)
@@ -226,25 +219,21 @@ std::vector<spot::Grain> FixSpot::grains_of_lammps() const
   return grains;
 }
 
-void FixSpot::make_drainage(const std::vector<spot::Grain> &grains)
-{
+void FixSpot::make_drainage(const std::vector<spot::Grain> &grains) {
   const SpotCommand &command = model->command;
   const spot::DrainageLimits limits{*command.outlet, command.largest_overlap};
   double extent = std::abs(*command.outlet) + model->diameter;
   for (int axis = 0; axis < 3; ++axis)
     extent = std::max({extent, std::abs(domain->boxlo[axis]), std::abs(domain->boxhi[axis])});
   if (command.time_ordered)
-    model->drainage = std::make_unique<spot::TimeOrderedDrainage>(command.spots, command.relaxation, limits,
-                                                                  model->container,
-                                                                  spot::Packing(model->diameter, extent, grains));
+    model->drainage = std::make_unique<spot::TimeOrderedDrainage>(
+        command.spots, command.relaxation, limits, model->container, spot::Packing(model->diameter, extent, grains));
   else
-    model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits,
-                                                               *command.window, model->container, model->diameter,
-                                                               extent, grains);
+    model->drainage = std::make_unique<spot::WindowedDrainage>(
+        command.spots, command.relaxation, limits, *command.window, model->container, model->diameter, extent, grains);
 }
 
-void FixSpot::setup(int)
-{
+void FixSpot::setup(int) {
   try {
     const std::vector<spot::Grain> grains = grains_of_lammps();
     if (!model->drainage) {
@@ -262,8 +251,7 @@ void FixSpot::setup(int)
 }
 
 /// Index of a grain in LAMMPS' arrays, which no longer hold it if it was outside the simulation box.
-int FixSpot::local_index(std::int64_t grain) const
-{
+int FixSpot::local_index(std::int64_t grain) const {
   const auto found = model->local.find(static_cast<tagint>(grain));
   if (found == model->local.end())
     error->one(FLERR, message("fix spot: grain ", grain, " was lost by LAMMPS: make the simulation box larger"));
@@ -271,8 +259,7 @@ int FixSpot::local_index(std::int64_t grain) const
 }
 
 /// Positions go back to LAMMPS; the velocity is the displacement over the step divided by the timestep.
-void FixSpot::write_grains()
-{
+void FixSpot::write_grains() {
   auto &local = model->local;
   local.clear();
   for (int i = 0; i < atom->nlocal; ++i) local[atom->tag[i]] = i;
@@ -290,8 +277,7 @@ void FixSpot::write_grains()
    one step: a whole number of windows
 ------------------------------------------------------------------------- */
 
-void FixSpot::initial_integrate(int)
-{
+void FixSpot::initial_integrate(int) {
   spot::Drainage &drainage = *model->drainage;
   try {
     // The clock is a multiple of the window: how many of them make a step changes nothing.
@@ -312,8 +298,7 @@ void FixSpot::initial_integrate(int)
 }
 
 /// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this.
-void FixSpot::pre_exchange()
-{
+void FixSpot::pre_exchange() {
   if (model->leaving.empty()) return;
   for (const tagint grain : model->leaving) {
     atom->x[local_index(grain)][2] = domain->boxlo[2] - model->diameter;
@@ -324,8 +309,7 @@ void FixSpot::pre_exchange()
 
 void FixSpot::end_of_step() { list_spots(); }
 
-void FixSpot::list_spots()
-{
+void FixSpot::list_spots() {
   const std::vector<spot::Spot> spots = model->drainage->spots();
   model->spots.resize(spots.size() * COLUMNS);
   model->rows.resize(spots.size());
@@ -348,43 +332,42 @@ void FixSpot::list_spots()
 ------------------------------------------------------------------------- */
 
 /// Between runs a region may be deleted, and finding the overlap may need the walls: find it while they are there.
-void FixSpot::post_run()
-{
+void FixSpot::post_run() {
   if (model->drainage) model->overlap_after_run = largest_overlap();
 }
 
-double FixSpot::compute_vector(int which)
-{
+double FixSpot::compute_vector(int which) {
   if (!model->drainage) return 0.0;
   const spot::Counters &counters = model->drainage->counters();
   switch (which) {
-    case 0: return static_cast<double>(model->drainage->spots().size());
-    case 1: return static_cast<double>(counters.moves);
-    case 2: return static_cast<double>(counters.drained);
-    case 3: return model->drained_mass;
-    case 4: return mean_outflow();
-    case 5: return update->whichflag ? largest_overlap() : model->overlap_after_run;
-    default: return static_cast<double>(counters.sweeps);
+    case 0:
+      return static_cast<double>(model->drainage->spots().size());
+    case 1:
+      return static_cast<double>(counters.moves);
+    case 2:
+      return static_cast<double>(counters.drained);
+    case 3:
+      return model->drained_mass;
+    case 4:
+      return mean_outflow();
+    case 5:
+      return update->whichflag ? largest_overlap() : model->overlap_after_run;
+    default:
+      return static_cast<double>(counters.sweeps);
   }
 }
 
 /// In distance units.
-double FixSpot::largest_overlap() const
-{
-  return model->drainage->largest_overlap().depth * model->diameter;
-}
+double FixSpot::largest_overlap() const { return model->drainage->largest_overlap().depth * model->diameter; }
 
 /// Grains a time, over the last `average` steps (fewer when no more were done).
-double FixSpot::mean_outflow() const
-{
+double FixSpot::mean_outflow() const {
   const auto &totals = model->drained_after_step;
   if (totals.size() < 2) return 0.0;
   return static_cast<double>(totals.back() - totals.front()) / (static_cast<double>(totals.size() - 1) * update->dt);
 }
 
-double FixSpot::memory_usage()
-{
+double FixSpot::memory_usage() {
   if (!model->drainage) return 0.0;
-  return static_cast<double>(model->drainage->memory()) +
-      static_cast<double>(model->spots.capacity() * sizeof(double));
+  return static_cast<double>(model->drainage->memory()) + static_cast<double>(model->spots.capacity() * sizeof(double));
 }

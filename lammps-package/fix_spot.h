@@ -37,7 +37,7 @@ class FixSpot : public Fix {
   double memory_usage() override;
 
  private:
-  struct Model;    // what comes from spot-core stays out of this header
+  struct Model;  // what comes from spot-core stays out of this header
   std::unique_ptr<Model> model;
 
   void check_run();
@@ -55,7 +55,7 @@ class FixSpot : public Fix {
   double mean_outflow() const;
 };
 
-}    // namespace LAMMPS_NS
+}  // namespace LAMMPS_NS
 
 #endif
 #endif

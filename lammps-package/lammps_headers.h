@@ -12,7 +12,8 @@
 
 #if FMT_VERSION >= 90000
 namespace fmt {
-template <typename... Args> format_args make_args_checked(...);
+template <typename... Args>
+format_args make_args_checked(...);
 }
 #endif
 

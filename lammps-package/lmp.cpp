@@ -7,11 +7,10 @@
 #include "input.h"
 #include "lammps.h"
 
-#include <cstdio>
 #include <mpi.h>
+#include <cstdio>
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
   MPI_Init(&argc, &argv);
   {
     LAMMPS_NS::LAMMPS lammps(argc, argv, MPI_COMM_WORLD);

@@ -10,10 +10,9 @@ using namespace LAMMPS_NS;
 
 static Fix *create_fix_spot(LAMMPS *lmp, int narg, char **arg) { return new FixSpot(lmp, narg, arg); }
 
-extern "C" void lammpsplugin_init(void *lmp, void *handle, void *register_function)
-{
+extern "C" void lammpsplugin_init(void *lmp, void *handle, void *register_function) {
   lammpsplugin_t plugin{};
-  plugin.version = LAMMPS_VERSION;    // LAMMPS warns when it is another one
+  plugin.version = LAMMPS_VERSION;  // LAMMPS warns when it is another one
   plugin.style = "fix";
   plugin.name = "spot";
   plugin.info = "drainage of dense grains by diffusing spots of free volume";

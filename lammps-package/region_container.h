@@ -28,6 +28,6 @@ class RegionContainer : public spot::Container {
   spot::SpotBuffers buffers_;
 };
 
-}    // namespace LAMMPS_NS
+}  // namespace LAMMPS_NS
 
 #endif

@@ -38,20 +38,22 @@ class Words {
     const char* first = word.c_str() + (plus ? 1 : 0);
     const auto [end, error] = std::from_chars(first, word.c_str() + word.size(), result);
     if (error != std::errc() || end != word.c_str() + word.size() || !std::isfinite(result))
-      throw InvalidParameter(message("'", word, "' is not a finite number, but keyword '", keyword_,
-                                     "' needs one for ", what));
+      throw InvalidParameter(
+          message("'", word, "' is not a finite number, but keyword '", keyword_, "' needs one for ", what));
     return result;
   }
 
   double positive(const char* what) {
     const double result = number(what);
-    if (result <= 0.0) throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be positive"));
+    if (result <= 0.0)
+      throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be positive"));
     return result;
   }
 
   double not_negative(const char* what) {
     const double result = number(what);
-    if (result < 0.0) throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be zero or positive"));
+    if (result < 0.0)
+      throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be zero or positive"));
     return result;
   }
 
@@ -60,8 +62,8 @@ class Words {
     long long result = 0;
     const auto [end, error] = std::from_chars(word.c_str(), word.c_str() + word.size(), result);
     if (error != std::errc() || end != word.c_str() + word.size() || result < least)
-      throw InvalidParameter(message("'", word, "' after keyword '", keyword_, "' must be a whole number, ", least,
-                                     " or more: ", what));
+      throw InvalidParameter(
+          message("'", word, "' after keyword '", keyword_, "' must be a whole number, ", least, " or more: ", what));
     return result;
   }
 
@@ -85,9 +87,11 @@ void read_relax(SpotCommand& command, Words& words) {
   else if (how == "never")
     command.relaxation.every = 0;
   else if (how == "every")
-    command.relaxation.every = static_cast<int>(std::min<long long>(words.integer("moves between relaxations", 1), 1 << 30));
+    command.relaxation.every =
+        static_cast<int>(std::min<long long>(words.integer("moves between relaxations", 1), 1 << 30));
   else
-    throw InvalidParameter(message("'relax ", how, "' is not known; allowed are 'relax tol delta', 'relax every k' and 'relax never'"));
+    throw InvalidParameter(
+        message("'relax ", how, "' is not known; allowed are 'relax tol delta', 'relax every k' and 'relax never'"));
 }
 
 void read_strength(SpotCommand& command, Words& words) {
@@ -148,8 +152,8 @@ const std::map<std::string, Reader>& readers() {
       {"strength", read_strength},
       {"alpha", [](SpotCommand& c, Words& w) { c.relaxation.alpha = w.positive("alpha"); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
-      {"overlap",
-       [](SpotCommand& c, Words& w) { c.largest_overlap = w.positive("the largest overlap at the start, in diameters"); }},
+      {"overlap", [](SpotCommand& c,
+                     Words& w) { c.largest_overlap = w.positive("the largest overlap at the start, in diameters"); }},
       {"average", [](SpotCommand& c, Words& w) {
          c.average = static_cast<int>(std::min<long long>(w.integer("steps for the mean outflow", 1), 1 << 30));
        }}};
@@ -180,7 +184,8 @@ SpotCommand parse_spot_command(const std::vector<std::string>& list) {
           "walls are needed, by 'box xlo xhi ylo yhi', 'cylinder x y radius' or 'region ID'");
   require(command.orifice.has_value(), "orifice", "'orifice x y z radius' says where grains leave and spots enter");
   require(command.spots.speed > 0.0, "speed", "the drift speed of spots");
-  require(command.spots.injection_rate > 0.0, "injection", "spots born per time; outflow / (influence * grains a spot)");
+  require(command.spots.injection_rate > 0.0, "injection",
+          "spots born per time; outflow / (influence * grains a spot)");
   return command;
 }
 

@@ -5,11 +5,10 @@
 
 #include "lammps.h"
 
-#include <cstdio>
 #include <mpi.h>
+#include <cstdio>
 
-int main(int argc, char **argv)
-{
+int main(int argc, char **argv) {
   MPI_Init(&argc, &argv);
   {
     const char *options[] = {"lmp", "-screen", "none", "-log", "none", "-nocite"};

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "spot/time_ordered_drainage.hpp"
 #include "spot/errors.hpp"
+#include "spot/time_ordered_drainage.hpp"
 
 /// A body-centred lattice of the packing fraction that dense flow has, 0.58, filling the box up to a height.
 std::vector<spot::Grain> lattice(double half_width, double half_depth, double height) {
@@ -34,7 +34,8 @@ int main() try {
   std::shared_ptr<const spot::Container> silo =
       spot::box_silo(-half_width, half_width, -half_depth, half_depth, orifice, buffers);
   spot::Packing packing(1.0, 100.0, lattice(half_width, half_depth, height));
-  spot::TimeOrderedDrainage drainage(spots, spot::RelaxationParameters(), spot::DrainageLimits{-1.0}, silo, std::move(packing));
+  spot::TimeOrderedDrainage drainage(spots, spot::RelaxationParameters(), spot::DrainageLimits{-1.0}, silo,
+                                     std::move(packing));
 
   std::printf("%8s %8s %8s %8s %16s\n", "time", "spots", "left", "drained", "largest overlap");
   for (double time = 0.0; time <= 20.0; time += 2.0) {

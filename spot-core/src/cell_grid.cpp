@@ -11,8 +11,8 @@ CellGrid::CellGrid(const Vector3& low, const Vector3& high, double edge) : low_(
   const Vector3 cells = (high - low) / edge + Vector3::Ones();
   constexpr double most = 1 << 30;
   if (!(cells.prod() <= most))
-    throw InvalidPacking(message("grains are spread over ", cells.prod(), " cells of ", edge, "; at most ", most,
-                                 " are allowed"));
+    throw InvalidPacking(
+        message("grains are spread over ", cells.prod(), " cells of ", edge, "; at most ", most, " are allowed"));
   nx_ = static_cast<int>(cells.x());
   ny_ = static_cast<int>(cells.y());
   nz_ = static_cast<int>(cells.z());
@@ -35,8 +35,8 @@ void CellGrid::erase(std::uint32_t cell, std::uint32_t index) {
 void CellGrid::widen() {
   const std::size_t capacity = 2 * capacity_;
   if (capacity > 255)
-    throw InvalidPacking(message("more than ", capacity_, " grains lie in one cell of edge ", edge_,
-                                 ": the packing has collapsed"));
+    throw InvalidPacking(
+        message("more than ", capacity_, " grains lie in one cell of edge ", edge_, ": the packing has collapsed"));
   std::vector<std::uint32_t> members(count_.size() * capacity);
   for (std::size_t cell = 0; cell < count_.size(); ++cell)
     std::copy_n(members_.begin() + static_cast<std::ptrdiff_t>(cell * capacity_), count_[cell],

@@ -16,8 +16,7 @@ double length(double x, double y) { return std::sqrt(x * x + y * y); }
 }  // namespace
 
 void WallContacts::add(const WallContact& contact) {
-  if (size_ == capacity)
-    throw InvalidContainer(message("more than ", capacity, " walls are close to one grain"));
+  if (size_ == capacity) throw InvalidContainer(message("more than ", capacity, " walls are close to one grain"));
   contacts_[size_++] = contact;
 }
 
@@ -33,8 +32,7 @@ Vector3 Orifice::keep_within(double limit, const Vector3& position) const {
 void Container::require_entrance(double spot_radius) const {
   if (orifice().radius < spot_radius)
     throw InvalidContainer(message("orifice radius is ", orifice().radius, " but must be at least the spot radius, ",
-                                   spot_radius,
-                                   ": narrower orifices clog, which is outside the spot model"));
+                                   spot_radius, ": narrower orifices clog, which is outside the spot model"));
 }
 
 Vector3 Wall::reflect_spot(double buffer, const Vector3& target) const {
@@ -77,8 +75,7 @@ WallContact BasePlate::nearest(const Vector3& centre) const {
   if (from_axis == 0.0) return {length(orifice_.radius, height), {0.0, 0.0, 1.0}};
   const double to_rim = orifice_.radius - from_axis;
   const double distance = length(to_rim, height);
-  return {distance,
-          {-dx / from_axis * to_rim / distance, -dy / from_axis * to_rim / distance, height / distance}};
+  return {distance, {-dx / from_axis * to_rim / distance, -dy / from_axis * to_rim / distance, height / distance}};
 }
 
 Vector3 BasePlate::reflect_spot(double buffer, const Vector3& target) const {
@@ -130,8 +127,8 @@ namespace {
 
 void require_order(const char* axis, double low, double high) {
   if (!(low < high) || !std::isfinite(low) || !std::isfinite(high))
-    throw InvalidContainer(message("walls along ", axis, " are at ", low, " and ", high,
-                                   " but must be finite and in increasing order"));
+    throw InvalidContainer(
+        message("walls along ", axis, " are at ", low, " and ", high, " but must be finite and in increasing order"));
 }
 
 void require_room(const char* axis, double low, double high, double buffer) {
@@ -173,8 +170,8 @@ std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius
   auto silo = std::make_unique<WalledContainer>(orifice);
   const double reach = length(orifice.centre.x() - x, orifice.centre.y() - y) + orifice.radius;
   if (reach > radius * (1.0 + 1e-9))
-    throw InvalidContainer(message("orifice reaches ", reach, " from the axis and is wider than the base of radius ",
-                                   radius));
+    throw InvalidContainer(
+        message("orifice reaches ", reach, " from the axis and is wider than the base of radius ", radius));
   silo->add(std::make_unique<BasePlate>(orifice), buffers.base);
   silo->add(std::move(wall), buffers.side);
   return silo;

@@ -31,8 +31,8 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
     throw InvalidParameter(message("outlet is at z = ", limits.outlet, " but must be above ", lowest_reached,
                                    ", the reach of newborn spots, and not above the orifice, ", base));
   if (!(limits.largest_overlap > 0.0))
-    throw InvalidParameter(message("largest overlap at the start is ", limits.largest_overlap,
-                                   " diameters but must be positive"));
+    throw InvalidParameter(
+        message("largest overlap at the start is ", limits.largest_overlap, " diameters but must be positive"));
 }
 
 std::vector<Grain> Drainage::grains() const {
@@ -55,8 +55,8 @@ void Drainage::require_inside(double lowest, double reach) const {
   const Orifice& orifice = container_->orifice();
   visit_grains([&](const Grain& grain) {
     const Vector3& centre = grain.position;
-    const bool falling = centre.z() < orifice.centre.z() && centre.z() >= lowest &&
-                         (centre - orifice.centre).head<2>().norm() <= reach;
+    const bool falling =
+        centre.z() < orifice.centre.z() && centre.z() >= lowest && (centre - orifice.centre).head<2>().norm() <= reach;
     if (!falling && !container_->contains(centre))
       throw InvalidPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
                                    ") is outside the container"));

@@ -33,9 +33,10 @@ struct Kernels {
   /// Adds `by` to the points within `radius` of `middle`; returns how many. n is even.
   int (*displace)(Point* points, std::size_t n, const Point& middle, double radius, const Point& by);
 
-  /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along the line of centres for
-  /// r < d, each component rounded to the quantum. (d - r) / r is expanded in s = 1 - r^2/d^2, good to 1e-4 of itself
-  /// for overlaps up to 0.05 d; deeper ones are pushed apart by somewhat less, which another sweep makes good.
+  /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
+  /// the line of centres for r < d, each component rounded to the quantum. (d - r) / r is expanded in s = 1 - r^2/d^2,
+  /// good to 1e-4 of itself for overlaps up to 0.05 d; deeper ones are pushed apart by somewhat less, which another
+  /// sweep makes good.
   void (*push_off_neighbours)(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                               const Push& push, Point* pushes);
 

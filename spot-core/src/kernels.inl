@@ -6,8 +6,8 @@
 
 namespace {
 
-using spot::kernels::Lists;
 using spot::Point;
+using spot::kernels::Lists;
 
 #ifndef __AVX2__
 

@@ -22,10 +22,14 @@ std::array<double, 4> numbers_of_step(const SpotParameters& p, const Spot& spot)
 /// One of the four vectors (+-dx, 0, dz), (0, +-dx, dz) (2006; trap: 2010 prints diagonals that spread twice as fast).
 Vector3 step_vector(const SpotParameters& p, double uniform) {
   switch (static_cast<int>(4.0 * uniform)) {
-    case 0: return {p.step_width, 0.0, p.step_height};
-    case 1: return {-p.step_width, 0.0, p.step_height};
-    case 2: return {0.0, p.step_width, p.step_height};
-    default: return {0.0, -p.step_width, p.step_height};
+    case 0:
+      return {p.step_width, 0.0, p.step_height};
+    case 1:
+      return {-p.step_width, 0.0, p.step_height};
+    case 2:
+      return {0.0, p.step_width, p.step_height};
+    default:
+      return {0.0, -p.step_width, p.step_height};
   }
 }
 

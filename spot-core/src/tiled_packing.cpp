@@ -66,8 +66,7 @@ void TiledPacking::lay_out(const std::vector<Grain>& grains, const Container& co
   touched_.assign(cells, 0);
   size_ = 0;
   for (const Grain& grain : grains) {
-    const std::uint32_t slot =
-        place(cell_of(grain.position), grain);
+    const std::uint32_t slot = place(cell_of(grain.position), grain);
     if (slot == nowhere_) {
       capacity_ *= 2;
       lay_out(grains, container);
@@ -83,9 +82,9 @@ int TiledPacking::cell_coordinate(double position, double low, int n) const {
 }
 
 std::uint32_t TiledPacking::cell_of(const Vector3& at) const {
-  return static_cast<std::uint32_t>((cell_coordinate(at.z(), low_.z(), nz_) * ny_ + cell_coordinate(at.y(), low_.y(), ny_)) *
-                                        nx_ +
-                                    cell_coordinate(at.x(), low_.x(), nx_));
+  return static_cast<std::uint32_t>(
+      (cell_coordinate(at.z(), low_.z(), nz_) * ny_ + cell_coordinate(at.y(), low_.y(), ny_)) * nx_ +
+      cell_coordinate(at.x(), low_.x(), nx_));
 }
 
 std::uint32_t TiledPacking::place(std::uint32_t cell, const Grain& grain) {
@@ -117,8 +116,10 @@ std::vector<Grain> TiledPacking::grains() const {
 
 void TiledPacking::find_rows(const Vector3& point, double reach) {
   rows_.clear();
-  const int z0 = cell_coordinate(point.z() - reach, low_.z(), nz_), z1 = cell_coordinate(point.z() + reach, low_.z(), nz_);
-  const int y0 = cell_coordinate(point.y() - reach, low_.y(), ny_), y1 = cell_coordinate(point.y() + reach, low_.y(), ny_);
+  const int z0 = cell_coordinate(point.z() - reach, low_.z(), nz_),
+            z1 = cell_coordinate(point.z() + reach, low_.z(), nz_);
+  const int y0 = cell_coordinate(point.y() - reach, low_.y(), ny_),
+            y1 = cell_coordinate(point.y() + reach, low_.y(), ny_);
   // Distance along one axis to a cell; the outermost cells also hold what lies beyond the grid.
   const auto gap = [this](double at, double low, int cell, int n) {
     const double from = low + cell * edge_;
@@ -142,13 +143,13 @@ void TiledPacking::find_rows(const Vector3& point, double reach) {
 
 int TiledPacking::displace(const Move& move, double radius, double influence) {
   const Point by = {quantum_.round(-influence * move.step.x()), quantum_.round(-influence * move.step.y()),
-                             quantum_.round(-influence * move.step.z()), 0.0};
+                    quantum_.round(-influence * move.step.z()), 0.0};
   const Point middle = {move.middle.x(), move.middle.y(), move.middle.z(), 0.0};
   find_rows(move.middle, radius + half_skin_);
   int moved = 0;
   for (const Row& row : rows_) {
     moved += kernels_->displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middle,
-                               radius, by);
+                                radius, by);
     for (std::uint32_t cell = row.first; cell < row.last; ++cell) {
       ++account_[cell];
       touched_[cell] = 1;
@@ -245,7 +246,8 @@ void TiledPacking::mark_near_walls(const Container& container) {
 void TiledPacking::add_neighbour(std::uint32_t slot, std::uint32_t neighbour) {
   if (list_size_[slot] == list_capacity_) {
     const std::uint32_t longer = 2 * list_capacity_;
-    if (longer > 128) throw InvalidPacking(message("a grain has more than ", list_capacity_, " neighbours: the packing has collapsed"));
+    if (longer > 128)
+      throw InvalidPacking(message("a grain has more than ", list_capacity_, " neighbours: the packing has collapsed"));
     std::vector<std::uint32_t> lists(static_cast<std::size_t>(nowhere_ + kernels::lanes) * longer, nowhere_);
     for (std::size_t s = 0; s < nowhere_; ++s)
       std::copy_n(lists_.begin() + static_cast<std::ptrdiff_t>(s * list_capacity_), list_size_[s],
@@ -275,8 +277,8 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, int due,
   }
   pushes_.resize(active_.size());
   kernels_->push_off_neighbours(points_.data(), active_.data(), active_.size(),
-                               {lists_.data(), list_size_.data(), list_capacity_},
-                               {diameter_, parameters.pair_share(), quantum_.shift()}, pushes_.data());
+                                {lists_.data(), list_size_.data(), list_capacity_},
+                                {diameter_, parameters.pair_share(), quantum_.shift()}, pushes_.data());
   push_off_walls(container, parameters.fixed_share());
   for (std::size_t k = 0; k < active_.size(); ++k) {
     Point& point = points_[active_[k]];
@@ -336,8 +338,8 @@ Overlap TiledPacking::largest_overlap() const {
 }
 
 std::size_t TiledPacking::memory() const {
-  return points_.capacity() * (2 * sizeof(Point) + sizeof(std::int64_t) + 3) + lists_.capacity() * sizeof(std::uint32_t) +
-         account_.capacity() * 5;
+  return points_.capacity() * (2 * sizeof(Point) + sizeof(std::int64_t) + 3) +
+         lists_.capacity() * sizeof(std::uint32_t) + account_.capacity() * 5;
 }
 
 }  // namespace spot

@@ -18,7 +18,6 @@
 namespace {
 
 using spot::Container;
-using spot::TimeOrderedDrainage;
 using spot::DrainageLimits;
 using spot::Grain;
 using spot::InvalidContainer;
@@ -30,6 +29,7 @@ using spot::RelaxationParameters;
 using spot::RelaxationStrength;
 using spot::SpotParameters;
 using spot::SpotPopulation;
+using spot::TimeOrderedDrainage;
 using spot::Vector3;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -47,7 +47,7 @@ SpotParameters strong_spots() {
 }
 
 TimeOrderedDrainage drainage_of(const std::vector<Grain>& grains, const SpotParameters& spots = strong_spots(),
-                     const RelaxationParameters& relaxation = {}, double outlet = -1.0) {
+                                const RelaxationParameters& relaxation = {}, double outlet = -1.0) {
   return {spots, relaxation, DrainageLimits{outlet}, scenes::small_silo(6.0, 4.0), Packing(1.0, 100.0, grains)};
 }
 
@@ -283,8 +283,8 @@ TEST(DrainageInvariance, UnitsChangeOnlyTheLastDigits) {
   spots.injection_rate /= tau;
   const spot::Orifice orifice{{0.0, 0.0, 0.0}, 4.0 * d};
   TimeOrderedDrainage metric(spots, {}, DrainageLimits{-d},
-                  spot::box_silo(-6.0 * d, 6.0 * d, -4.0 * d, 4.0 * d, orifice, {d, spots.radius}),
-                  Packing(d, 100.0 * d, in_metres));
+                             spot::box_silo(-6.0 * d, 6.0 * d, -4.0 * d, 4.0 * d, orifice, {d, spots.radius}),
+                             Packing(d, 100.0 * d, in_metres));
   metric.advance_to(0.2 * tau);
   EXPECT_EQ(metric.counters().moves, outcome.counters.moves);
   const auto left = metric.packing().grains();
@@ -449,8 +449,9 @@ TEST(DrainageUnit, DeepOverlapsAtTheStartNameBothGrainsAndTheBound) {
                 drainage_of({{31, {0.0, 0.0, 1.0}}, {12, {0.95, 0.0, 1.0}}, {5, {3.0, 0.0, 1.0}}});
               }),
               AllOf(HasSubstr("grains 12 and 31 "), HasSubstr("0.05"), HasSubstr("0.03")));
-  EXPECT_NO_THROW(TimeOrderedDrainage(scenes::paper_spots(), {}, DrainageLimits{-1.0, 0.06}, scenes::small_silo(6.0, 4.0),
-                           Packing(1.0, 100.0, {{31, {0.0, 0.0, 1.0}}, {12, {0.95, 0.0, 1.0}}})))
+  EXPECT_NO_THROW(TimeOrderedDrainage(scenes::paper_spots(), {}, DrainageLimits{-1.0, 0.06},
+                                      scenes::small_silo(6.0, 4.0),
+                                      Packing(1.0, 100.0, {{31, {0.0, 0.0, 1.0}}, {12, {0.95, 0.0, 1.0}}})))
       << "the bound can be set";
 }
 
@@ -461,8 +462,8 @@ TEST(DrainageUnit, OverlapIsMeasuredInDiameters) {
   const auto start = [&](double distance) {
     const spot::Orifice orifice{{0.0, 0.0, 0.0}, 4.0 * d};
     TimeOrderedDrainage(spots, {}, DrainageLimits{-d},
-             spot::box_silo(-6.0 * d, 6.0 * d, -4.0 * d, 4.0 * d, orifice, {d, spots.radius}),
-             Packing(d, 1.0, {{1, {0.0, 0.0, d}}, {2, {distance * d, 0.0, d}}}));
+                        spot::box_silo(-6.0 * d, 6.0 * d, -4.0 * d, 4.0 * d, orifice, {d, spots.radius}),
+                        Packing(d, 1.0, {{1, {0.0, 0.0, d}}, {2, {distance * d, 0.0, d}}}));
   };
   EXPECT_NO_THROW(start(0.975));
   EXPECT_THAT(scenes::text_of<InvalidPacking>([&] { start(0.95); }), HasSubstr("overlap by 0.05"));

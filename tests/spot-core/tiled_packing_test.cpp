@@ -68,7 +68,9 @@ class PlainPacking {
 
  private:
   static double square(const Vector3& v) { return v.x() * v.x() + v.y() * v.y() + v.z() * v.z(); }
-  Vector3 rounded(const Vector3& v) const { return {quantum_.round(v.x()), quantum_.round(v.y()), quantum_.round(v.z())}; }
+  Vector3 rounded(const Vector3& v) const {
+    return {quantum_.round(v.x()), quantum_.round(v.y()), quantum_.round(v.z())};
+  }
 
   Quantum quantum_;
   const spot::Container& container_;

@@ -12,12 +12,12 @@
 
 namespace {
 
-using spot::TimeOrderedDrainage;
 using spot::DrainageLimits;
 using spot::Grain;
 using spot::Packing;
 using spot::SpotParameters;
 using spot::SpotPopulation;
+using spot::TimeOrderedDrainage;
 
 /// Where moves are counted: below the sinking surface, above where the walk still converges on the orifice.
 constexpr double bulk_low = 6.0, bulk_high = 12.0;
@@ -42,7 +42,7 @@ TEST(VolumeClosureSlow, FluxThroughEveryHeightEqualsOutflowAndWhatTheSpotsCarry)
   spots.speed = 6.4;
   const auto silo = scenes::small_silo(8.0, 4.0);
   TimeOrderedDrainage drainage(spots, {}, DrainageLimits{-1.0}, silo,
-                    Packing(1.0, 100.0, scenes::dense_grains({-7.5, -3.5, 0.5}, {7.5, 3.5, 30.0}, 0.01, 1)));
+                               Packing(1.0, 100.0, scenes::dense_grains({-7.5, -3.5, 0.5}, {7.5, 3.5, 30.0}, 0.01, 1)));
 
   // The same moves again, one at a time, to know how many grains each of them moved.
   SpotPopulation moves(spots, *silo);

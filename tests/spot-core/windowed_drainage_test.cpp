@@ -22,7 +22,9 @@ using testing::HasSubstr;
 
 constexpr double window = 5e-3;
 
-std::vector<Grain> filling(double height) { return scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, height}, 0.01, 2); }
+std::vector<Grain> filling(double height) {
+  return scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, height}, 0.01, 2);
+}
 
 WindowedDrainage drainage_of(const std::vector<Grain>& grains, const SpotParameters& spots = scenes::paper_spots(),
                              const RelaxationParameters& relaxation = {}, double length = window) {

@@ -39,9 +39,9 @@ class Drainage {
   /// last whole window before it.
   virtual void advance_to(double time) = 0;
 
-  /// Goes on with other grains, as after somebody else moved, added or took some; the spots stay. Throws InvalidPacking,
-  /// and changes nothing, if a grain is outside. How deeply grains overlap is not asked: in flow that is the
-  /// relaxation's business.
+  /// Goes on with other grains, as after somebody else moved, added or took some; the spots stay. Throws
+  /// InvalidPacking, and changes nothing, if a grain is outside. How deeply grains overlap is not asked: in flow that
+  /// is the relaxation's business.
   virtual void replace_grains(const std::vector<Grain>& grains) = 0;
 
   /// Goes on with other walls; grains that are outside them are found by require_inside().

@@ -40,7 +40,8 @@ struct Overlap {
 class Packing {
  public:
   /// `extent` is the largest coordinate (absolute value) a grain may ever have; it sets the quantum.
-  /// Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, or an id occurs twice.
+  /// Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, or an id occurs
+  /// twice.
   Packing(double diameter, double extent, const std::vector<Grain>& grains);
 
   double diameter() const { return diameter_; }
@@ -129,8 +130,8 @@ class Packing {
   std::vector<char> held_, near_wall_;
   std::size_t removed_ = 0;
 
-  CellGrid grid_;                        // of the references
-  std::vector<std::uint32_t> cell_;      // of each grain; nowhere once removed
+  CellGrid grid_;                          // of the references
+  std::vector<std::uint32_t> cell_;        // of each grain; nowhere once removed
   std::vector<std::uint32_t> neighbours_;  // list_capacity_ places a grain
   std::vector<std::uint16_t> list_size_;
   std::size_t list_capacity_ = 16;

@@ -40,8 +40,8 @@ enum class RelaxationStrength {
 
 /// The soft-core relaxation of a packing (2006, section IV; 2010, section 2.3).
 struct RelaxationParameters {
-  double alpha = 0.8;                                              ///< share of an overlap taken back in one sweep
-  RelaxationStrength strength = RelaxationStrength::half_each;     ///< who moves how far
+  double alpha = 0.8;                                           ///< share of an overlap taken back in one sweep
+  RelaxationStrength strength = RelaxationStrength::half_each;  ///< who moves how far
   double shell = 1.0;  ///< grains farther than R_s + shell diameters from the step's middle are held fixed
   int every = 1;       ///< time-ordered driver: relax after every so many moves of all spots; 0: never
   /// Windowed driver: rms overlap, in diameters, that moves may build up between sweeps.

@@ -84,7 +84,9 @@ class TiledPacking {
   void select_due_cells(int due);
   void push_off_walls(const Container& container, double share);
   Vector3 position(std::uint32_t slot) const { return {points_[slot].x, points_[slot].y, points_[slot].z}; }
-  Vector3 reference(std::uint32_t slot) const { return {references_[slot].x, references_[slot].y, references_[slot].z}; }
+  Vector3 reference(std::uint32_t slot) const {
+    return {references_[slot].x, references_[slot].y, references_[slot].z};
+  }
   Grain grain(std::uint32_t slot) const { return {ids_[slot], position(slot), held_[slot] != 0}; }
   std::uint32_t cells() const { return static_cast<std::uint32_t>(account_.size()); }
 

@@ -12,8 +12,8 @@ namespace spot {
 /// The fast driver. Per window of time all spots walk and displace their blocks, in order of birth; then the cells in
 /// which that has used up the tolerance are relaxed, as often as it takes.
 ///
-/// How much a cell needs is kept in its account, the number of moves that reached into it: n of them, each enclosing one
-/// grain of a touching pair or the other with probability 1/4, add w^2 dx^2 n / 12 to the mean square overlap along
+/// How much a cell needs is kept in its account, the number of moves that reached into it: n of them, each enclosing
+/// one grain of a touching pair or the other with probability 1/4, add w^2 dx^2 n / 12 to the mean square overlap along
 /// the line of centres. A cell is due when that exceeds the tolerance squared.
 class WindowedDrainage : public Drainage {
  public:

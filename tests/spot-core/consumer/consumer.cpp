@@ -13,7 +13,7 @@ int main() {
   std::shared_ptr<const spot::Container> silo =
       spot::cylinder_silo(0.0, 0.0, 8.0, spot::Orifice{{0.0, 0.0, 0.0}, 4.0}, spot::SpotBuffers{1.0, 2.6});
   spot::TimeOrderedDrainage drainage(spots, spot::RelaxationParameters(), spot::DrainageLimits{-1.0}, silo,
-                          spot::Packing(1.0, 100.0, {{1, {0.0, 0.0, 0.5}}}));
+                                     spot::Packing(1.0, 100.0, {{1, {0.0, 0.0, 0.5}}}));
   drainage.advance_to(2.0);
   return drainage.counters().moves > 0 ? 0 : 1;
 }
