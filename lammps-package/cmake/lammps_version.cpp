@@ -13,7 +13,7 @@ int main(int argc, char **argv) {
   {
     const char *options[] = {"lmp", "-screen", "none", "-log", "none", "-nocite"};
     LAMMPS_NS::LAMMPS lammps(6, const_cast<char **>(options), MPI_COMM_WORLD);
-    std::printf("%d\n", lammps.num_ver);
+    std::printf("lammps version %d\n", lammps.num_ver);
   }
   MPI_Finalize();
   return 0;
