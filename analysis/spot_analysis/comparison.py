@@ -79,8 +79,8 @@ def common_times(dem, spot):
 
 
 def _list_times(times):
-    shown = ", ".join(f"{time:g}" for time in times[:4])
-    return f"{shown}{' ...' if len(times) > 4 else ''} {times[-1]:g} tau"
+    shown = [f"{time:g}" for time in times]
+    return ", ".join(shown if len(shown) <= 5 else [*shown[:4], "...", shown[-1]]) + " tau"
 
 
 def choose_interval(times, start=None, end=None):

@@ -51,15 +51,7 @@ void TimeOrderedDrainage::take_out_drained() {
 }
 
 void TimeOrderedDrainage::replace_grains(const std::vector<Grain>& grains) {
-  // All or nothing: what is refused leaves everything as it was.
-  Packing packing(packing_.diameter(), packing_.extent(), grains);
-  std::swap(packing, packing_);
-  try {
-    require_inside();
-  } catch (...) {
-    std::swap(packing, packing_);
-    throw;
-  }
+  replace_if_inside(packing_, Packing(packing_.diameter(), packing_.extent(), grains));
 }
 
 void TimeOrderedDrainage::replace_container(std::shared_ptr<const Container> container) {

@@ -121,15 +121,8 @@ void WindowedDrainage::relax() {
 }
 
 void WindowedDrainage::replace_grains(const std::vector<Grain>& grains) {
-  // All or nothing: what is refused leaves everything as it was.
-  TiledPacking packing(packing_.diameter(), packing_.extent(), limits_.outlet, grains, container());
-  std::swap(packing, packing_);
-  try {
-    require_inside();
-  } catch (...) {
-    std::swap(packing, packing_);
-    throw;
-  }
+  replace_if_inside(packing_,
+                    TiledPacking(packing_.diameter(), packing_.extent(), limits_.outlet, grains, container()));
 }
 
 void WindowedDrainage::replace_container(std::shared_ptr<const Container> container) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "spot/container.hpp"
@@ -74,6 +75,19 @@ class Drainage {
 
   /// Throws InvalidPacking, naming the grains, if one is outside the container or two overlap too deeply.
   void require_valid_start();
+
+  /// Puts `fresh` in the place of the driver's packing; throws InvalidPacking, and leaves everything as it was, if a
+  /// grain of it is outside.
+  template <typename AnyPacking>
+  void replace_if_inside(AnyPacking& packing, AnyPacking fresh) {
+    std::swap(packing, fresh);
+    try {
+      require_inside();
+    } catch (...) {
+      std::swap(packing, fresh);
+      throw;
+    }
+  }
 
   const Container& container() const { return *container_; }
 
