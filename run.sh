@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Installs what is needed, builds, drains the silo with the spot model and compares it with the DEM reference.
 #
-#   ./run.sh                 0.7 s of flow, a few minutes
+#   ./run.sh                 0.5 s of flow, a few minutes
 #   ./run.sh --full          all 1.57 s of the paper
 #   ./run.sh --time 0.2      so many seconds; --seed N: another seed
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-time=0.7
+time=0.5
 seed=1
 while [ $# -gt 0 ]; do
   case "$1" in
