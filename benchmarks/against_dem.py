@@ -388,6 +388,8 @@ def parse(arguments):
 
 def main():
     options = parse(None)
+    # As Ctrl-C: no program may run on, and the folder must go.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with contextlib.ExitStack() as stack:
         if options.keep:
             work = options.keep.absolute()
