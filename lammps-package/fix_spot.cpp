@@ -35,6 +35,40 @@ enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
 
 enum BoundaryKind { PERIODIC = 0, FIXED = 1 };  // as in domain.h
 
+/// Where LAMMPS keeps the grain of an ID: a table, or a map if the IDs leave large gaps.
+class LocalIndices {
+ public:
+  void assign(const tagint *tags, int n) {
+    map_.clear();
+    table_.clear();
+    if (n == 0) return;
+    const auto [low, high] = std::minmax_element(tags, tags + n);
+    lowest_ = *low;
+    if (*high - *low < 16 * static_cast<bigint>(n)) table_.assign(*high - *low + 1, -1);
+    for (int i = 0; i < n; ++i) {
+      if (table_.empty())
+        map_[tags[i]] = i;
+      else
+        table_[tags[i] - lowest_] = i;
+    }
+  }
+
+  /// -1 if there is no such grain.
+  int operator[](tagint tag) const {
+    if (!table_.empty()) {
+      const auto place = static_cast<std::size_t>(tag - lowest_);
+      return tag >= lowest_ && place < table_.size() ? table_[place] : -1;
+    }
+    const auto found = map_.find(tag);
+    return found == map_.end() ? -1 : found->second;
+  }
+
+ private:
+  tagint lowest_ = 0;
+  std::vector<int> table_;
+  std::unordered_map<tagint, int> map_;
+};
+
 }  // namespace
 
 struct FixSpot::Model {
@@ -46,7 +80,7 @@ struct FixSpot::Model {
   std::unique_ptr<spot::Drainage> drainage;
   bigint windows = 0;  // done since the fix was made; the clock of the spots
   int windows_per_step = 1;
-  std::unordered_map<tagint, int> local;        // index of a grain in LAMMPS' arrays
+  LocalIndices local;
   std::vector<tagint> leaving;                  // drained grains that LAMMPS still holds, in increasing order
   std::deque<bigint> drained_after_step = {0};  // totals over the last command.average steps
   std::vector<double> spots;                    // SpotColumn values, a row a spot
@@ -109,9 +143,9 @@ void FixSpot::check_run() {
 void FixSpot::choose_window() {
   const SpotCommand &command = model->command;
   if (!command.window) {
-    // In the windowed driver no spot should go far between two relaxations: 0.016 d is six windows a step of 0.1 d.
-    const double longest = 0.016 * model->diameter / command.spots.speed;
-    model->command.window = command.time_ordered ? update->dt : update->dt / std::ceil(update->dt / longest);
+    // In the windowed driver no spot should go far between two relaxations.
+    const double longest = 0.032 * model->diameter / command.spots.speed;
+    model->command.window = *command.time_ordered ? update->dt : update->dt / std::ceil(update->dt / longest - 1e-9);
   }
   const double ratio = update->dt / *model->command.window;
   constexpr double most = 1e9;  // an int holds the number of windows in a step
@@ -152,11 +186,11 @@ void FixSpot::init() {
   check_run();
   check_other_fixes();
   check_grains();
-  choose_window();
   // Without a pair style nobody else asks for a communication cutoff, and LAMMPS would warn that it is zero.
   comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
   try {
     model->command.resolve(model->diameter);
+    choose_window();
     check_box();
     make_container();
   } catch (const spot::Error &e) {
@@ -225,12 +259,13 @@ void FixSpot::make_drainage(const std::vector<spot::Grain> &grains) {
   double extent = std::abs(*command.outlet) + model->diameter;
   for (int axis = 0; axis < 3; ++axis)
     extent = std::max({extent, std::abs(domain->boxlo[axis]), std::abs(domain->boxhi[axis])});
-  if (command.time_ordered)
+  if (*command.time_ordered)
     model->drainage = std::make_unique<spot::TimeOrderedDrainage>(
         command.spots, command.relaxation, limits, model->container, spot::Packing(model->diameter, extent, grains));
   else
-    model->drainage = std::make_unique<spot::WindowedDrainage>(
-        command.spots, command.relaxation, limits, *command.window, model->container, model->diameter, extent, grains);
+    model->drainage =
+        std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits, *command.window,
+                                                 command.threads, model->container, model->diameter, extent, grains);
 }
 
 void FixSpot::setup(int) {
@@ -252,17 +287,15 @@ void FixSpot::setup(int) {
 
 /// Index of a grain in LAMMPS' arrays, which no longer hold it if it was outside the simulation box.
 int FixSpot::local_index(std::int64_t grain) const {
-  const auto found = model->local.find(static_cast<tagint>(grain));
-  if (found == model->local.end())
+  const int index = model->local[static_cast<tagint>(grain)];
+  if (index < 0)
     error->one(FLERR, message("fix spot: grain ", grain, " was lost by LAMMPS: make the simulation box larger"));
-  return found->second;
+  return index;
 }
 
 /// Positions go back to LAMMPS; the velocity is the displacement over the step divided by the timestep.
 void FixSpot::write_grains() {
-  auto &local = model->local;
-  local.clear();
-  for (int i = 0; i < atom->nlocal; ++i) local[atom->tag[i]] = i;
+  model->local.assign(atom->tag, atom->nlocal);
   const double per_time = 1.0 / update->dt;
   model->drainage->visit_grains([&](const spot::Grain &grain) {
     const int i = local_index(grain.id);

@@ -17,6 +17,7 @@ class RegionContainer : public spot::Container {
 
   bool contains(const spot::Vector3 &centre) const override;
   void contacts(const spot::Vector3 &centre, double reach, spot::WallContacts &contacts) const override;
+  bool concurrent() const override { return false; }
   const spot::Orifice &orifice() const override { return orifice_; }
   spot::Vector3 keep_spot_inside(const spot::Vector3 &start, const spot::Vector3 &target) const override;
 

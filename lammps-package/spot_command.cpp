@@ -79,29 +79,41 @@ void set_walls(SpotCommand& command, decltype(SpotCommand::walls) walls) {
   command.walls = std::move(walls);
 }
 
+int to_int(long long value) { return static_cast<int>(std::min<long long>(value, 1 << 30)); }
+
 void read_relax(SpotCommand& command, Words& words) {
-  const std::string how = words.value("'tol', 'every' or 'never'");
+  using spot::RelaxationSchedule;
+  static const std::map<std::string, RelaxationSchedule> schedules = {{"every", RelaxationSchedule::moves},
+                                                                      {"chance", RelaxationSchedule::chance},
+                                                                      {"spot", RelaxationSchedule::spot},
+                                                                      {"global", RelaxationSchedule::global}};
+  const std::string how = words.value("'tol', 'every', 'chance', 'spot', 'global' or 'never'");
   command.time_ordered = how != "tol";
-  if (how == "tol")
-    command.relaxation.tolerance = words.positive("the tolerance, in diameters,");
-  else if (how == "never")
+  const auto schedule = schedules.find(how);
+  if (how == "tol") {
+    command.tolerance = words.positive("the tolerance, in diameters,");
+  } else if (how == "never") {
     command.relaxation.every = 0;
-  else if (how == "every")
-    command.relaxation.every =
-        static_cast<int>(std::min<long long>(words.integer("moves between relaxations", 1), 1 << 30));
-  else
-    throw InvalidParameter(
-        message("'relax ", how, "' is not known; allowed are 'relax tol delta', 'relax every k' and 'relax never'"));
+  } else if (schedule != schedules.end()) {
+    command.relaxation.schedule = schedule->second;
+    command.relaxation.every = to_int(words.integer("moves between relaxations", 1));
+  } else {
+    throw InvalidParameter(message("'relax ", how,
+                                   "' is not known; allowed are 'relax tol delta', 'relax never', and "
+                                   "'every', 'chance', 'spot' and 'global' with a number k"));
+  }
 }
 
-void read_strength(SpotCommand& command, Words& words) {
-  const std::string which = words.value("'half' or 'full'");
-  if (which == "half")
-    command.relaxation.strength = spot::RelaxationStrength::half_each;
-  else if (which == "full")
-    command.relaxation.strength = spot::RelaxationStrength::full_each;
-  else
-    throw InvalidParameter(message("'strength ", which, "' is not known; allowed are 'half' (2010) and 'full' (2006)"));
+/// A value that has to be one of some words.
+template <typename Value>
+Value one_of(Words& words, const char* keyword, const std::map<std::string, Value>& allowed) {
+  std::string known;
+  for (const auto& entry : allowed) known += (known.empty() ? "'" : " or '") + entry.first + "'";
+  const std::string word = words.value(known.c_str());
+  const auto found = allowed.find(word);
+  if (found == allowed.end())
+    throw InvalidParameter(message("'", keyword, ' ', word, "' is not known; allowed is ", known));
+  return found->second;
 }
 
 using Reader = std::function<void(SpotCommand&, Words&)>;
@@ -149,14 +161,29 @@ const std::map<std::string, Reader>& readers() {
        }},
       {"window", [](SpotCommand& c, Words& w) { c.window = w.positive("the window"); }},
       {"relax", read_relax},
-      {"strength", read_strength},
-      {"alpha", [](SpotCommand& c, Words& w) { c.relaxation.alpha = w.positive("alpha"); }},
+      {"accuracy",
+       [](SpotCommand& c, Words& w) {
+         c.accuracy = one_of<Accuracy>(
+             w, "accuracy", {{"fast", Accuracy::fast}, {"normal", Accuracy::normal}, {"exact", Accuracy::exact}});
+       }},
+      {"strength",
+       [](SpotCommand& c, Words& w) {
+         c.relaxation.strength = one_of<spot::RelaxationStrength>(
+             w, "strength",
+             {{"half", spot::RelaxationStrength::half_each}, {"full", spot::RelaxationStrength::full_each}});
+       }},
+      {"alpha", [](SpotCommand& c, Words& w) { c.alpha = w.positive("alpha"); }},
+      {"momentum", [](SpotCommand& c, Words& w) { c.momentum = w.not_negative("the momentum"); }},
+      {"volume", [](SpotCommand& c, Words& w) { c.spots.fixed_volume = w.not_negative("the number of grains"); }},
+      {"steps",
+       [](SpotCommand& c, Words& w) {
+         c.spots.together = one_of<bool>(w, "steps", {{"poisson", false}, {"together", true}});
+       }},
+      {"threads", [](SpotCommand& c, Words& w) { c.threads = to_int(w.integer("the number of threads", 1)); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,
                      Words& w) { c.largest_overlap = w.positive("the largest overlap at the start, in diameters"); }},
-      {"average", [](SpotCommand& c, Words& w) {
-         c.average = static_cast<int>(std::min<long long>(w.integer("steps for the mean outflow", 1), 1 << 30));
-       }}};
+      {"average", [](SpotCommand& c, Words& w) { c.average = to_int(w.integer("steps for the mean outflow", 1)); }}};
   return all;
 }
 
@@ -189,11 +216,29 @@ SpotCommand parse_spot_command(const std::vector<std::string>& list) {
   return command;
 }
 
+double SpotCommand::step_height_in_diameters(Accuracy accuracy) { return accuracy == Accuracy::exact ? 0.1 : 0.8; }
+
+spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy) {
+  // Chosen from the curves of benchmarks/time_vs_error.py.
+  spot::RelaxationParameters relaxation;
+  if (accuracy == Accuracy::exact) return relaxation;
+  relaxation.tolerance = accuracy == Accuracy::fast ? 6e-3 : 3.7e-3;
+  relaxation.alpha = 1.2;
+  relaxation.momentum = 0.7;
+  return relaxation;
+}
+
 void SpotCommand::resolve(double diameter) {
+  const spot::RelaxationParameters chosen = relaxation_of(accuracy);
+  time_ordered = time_ordered.value_or(accuracy == Accuracy::exact);
+  relaxation.tolerance = tolerance.value_or(chosen.tolerance);
+  // The schedules of 2006 and 2010 go with their alpha.
+  relaxation.alpha = alpha.value_or(relaxation_of(*time_ordered ? Accuracy::exact : accuracy).alpha);
+  relaxation.momentum = *time_ordered ? 0.0 : momentum.value_or(chosen.momentum);
   if (spots.radius == 0.0) spots.radius = 2.6 * diameter;
-  if (spots.step_height == 0.0) spots.step_height = 0.1 * diameter;
+  if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
   spots.step_width = spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height);
   side_buffer = side_buffer.value_or(diameter);
   base_buffer = base_buffer.value_or(diameter);
-  outlet = outlet.value_or(orifice->centre.z() - diameter);
+  outlet = outlet.value_or(orifice->centre.z());
 }

@@ -25,6 +25,13 @@ struct RegionWalls {
   std::string id;
 };
 
+/// `accuracy`: what everything that the command leaves open is chosen for.
+enum class Accuracy {
+  fast,    ///< overlaps up to several times those of DEM
+  normal,  ///< overlaps no larger than those of DEM
+  exact,   ///< as 2006: small steps in the order of time, relaxation after each
+};
+
 /// What a `fix ID group spot ...` command says, in the units of the deck. Where a length or a time was not
 /// given, it is empty and follows from the grain diameter or the timestep, see resolve().
 struct SpotCommand {
@@ -32,7 +39,10 @@ struct SpotCommand {
   std::optional<spot::Orifice> orifice;
   spot::SpotParameters spots;
   spot::RelaxationParameters relaxation;
-  bool time_ordered = true;  // the driver of 2006, not the windowed one
+  std::optional<bool> time_ordered;  // the driver of 2006, not the windowed one
+  std::optional<double> tolerance, alpha, momentum;
+  Accuracy accuracy = Accuracy::normal;
+  int threads = 1;
   std::optional<double> diffusion_length;
   std::optional<double> outlet;
   std::optional<double> side_buffer, base_buffer;
@@ -40,9 +50,13 @@ struct SpotCommand {
   double largest_overlap = 0.03;  // in diameters
   int average = 100;              // steps over which the outflow is averaged
 
-  /// Fills in what follows from the grain diameter: radius 2.6 d, diffusion length 1.25 d, step height 0.1 d,
-  /// buffers, outlet one diameter below the orifice.
+  /// Fills in what was left open: radius 2.6 d, diffusion length 1.25 d, buffers of 1 d, outlet at the orifice, and
+  /// what `accuracy` decides.
   void resolve(double diameter);
+
+  /// The parameters of an accuracy.
+  static double step_height_in_diameters(Accuracy accuracy);
+  static spot::RelaxationParameters relaxation_of(Accuracy accuracy);
 
   bool uses_region() const { return std::holds_alternative<RegionWalls>(walls); }
 };

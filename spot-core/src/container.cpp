@@ -29,6 +29,11 @@ Vector3 Orifice::keep_within(double limit, const Vector3& position) const {
   return {centre.x() + scale * dx, centre.y() + scale * dy, position.z()};
 }
 
+const std::vector<AxisPlane>& Container::axis_planes() const {
+  static const std::vector<AxisPlane> none;
+  return none;
+}
+
 void Container::require_entrance(double spot_radius) const {
   if (orifice().radius < spot_radius)
     throw InvalidContainer(message("orifice radius is ", orifice().radius, " but must be at least the spot radius, ",
@@ -50,6 +55,12 @@ PlaneWall::PlaneWall(const Vector3& point, const Vector3& normal) {
 }
 
 WallContact PlaneWall::nearest(const Vector3& centre) const { return {normal_.dot(centre) - offset_, normal_}; }
+
+std::optional<AxisPlane> PlaneWall::axis_plane() const {
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(normal_[axis]) == 1.0) return AxisPlane{axis, offset_ * normal_[axis], normal_[axis] < 0.0};
+  return std::nullopt;
+}
 
 CylinderWall::CylinderWall(double x, double y, double radius) : x_(x), y_(y), radius_(radius) {
   if (!(radius > 0.0) || !std::isfinite(radius))
@@ -93,6 +104,7 @@ WalledContainer::WalledContainer(const Orifice& orifice) : orifice_(orifice) {
 void WalledContainer::add(std::unique_ptr<Wall> wall, double spot_buffer) {
   if (!(spot_buffer >= 0.0) || !std::isfinite(spot_buffer))
     throw InvalidContainer(message("spot buffer is ", spot_buffer, " but must be zero or positive"));
+  if (const auto plane = wall->axis_plane()) axis_planes_.push_back(*plane);
   walls_.push_back({std::move(wall), spot_buffer});
 }
 
@@ -105,6 +117,15 @@ bool WalledContainer::contains(const Vector3& centre) const {
 void WalledContainer::contacts(const Vector3& centre, double reach, WallContacts& contacts) const {
   contacts.clear();
   for (const Bounded& b : walls_) {
+    const WallContact contact = b.wall->nearest(centre);
+    if (contact.distance < reach) contacts.add(contact);
+  }
+}
+
+void WalledContainer::other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const {
+  contacts.clear();
+  for (const Bounded& b : walls_) {
+    if (b.wall->axis_plane()) continue;
     const WallContact contact = b.wall->nearest(centre);
     if (contact.distance < reach) contacts.add(contact);
   }

@@ -8,10 +8,11 @@
 
 namespace spot::kernels {
 
-/// Neighbour lists are filled up to a multiple of this with a point that is out of everybody's reach.
-constexpr std::uint32_t lanes = 8;
+/// Kernels work on whole packs of points: numbers of points given to them, except grains to be pushed, are multiples of
+/// this, and neighbour lists have room for a multiple of `lanes`.
+constexpr std::uint32_t pack = 4, lanes = 16;
 
-/// Lists of neighbours: `capacity` places a point, `size` of them in use.
+/// Lists of neighbours: `capacity` places a point, `size` of them in use; the others hold any valid index.
 struct Lists {
   const std::uint32_t* neighbours;
   const std::uint8_t* size;
@@ -20,28 +21,36 @@ struct Lists {
 
 /// How grains push each other apart.
 struct Push {
-  double diameter;
-  double share;  ///< of the overlap, by which each moves
-  double shift;  ///< that rounds to the quantum, see Quantum
+  float per_square;  ///< 1/d^2 in quanta
+  float share;       ///< of the overlap, by which each moves
 };
 
 /// One build of all kernels. They are compiled several times, for different instruction sets, from kernels.inl; results
-/// are the same bits for all (-ffp-contract=off, and only sums that are exact).
+/// are the same bits for all: every number goes through the same operations (-ffp-contract=off), and sums are of
+/// integers. Lengths are in quanta, their squares in single precision.
 struct Kernels {
   const char* instruction_set;
 
-  /// Adds `by` to the points within `radius` of `middle`; returns how many. n is even.
-  int (*displace)(Point* points, std::size_t n, const Point& middle, double radius, const Point& by);
+  /// Adds `by` to the free points within a radius of `middle`; returns how many.
+  int (*displace)(Point* points, std::size_t n, const Point& middle, float radius_squared, const Point& by);
 
   /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
-  /// the line of centres for r < d, each component rounded to the quantum. (d - r) / r is expanded in s = 1 - r^2/d^2,
+  /// the line of centres for r < d, each component cut to whole quanta. (d - r) / r is expanded in s = 1 - r^2/d^2,
   /// good to 1e-4 of itself for overlaps up to 0.05 d; deeper ones are pushed apart by somewhat less, which another
   /// sweep makes good.
   void (*push_off_neighbours)(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                               const Push& push, Point* pushes);
 
-  /// Is any of n points farther than `reach` from its reference? n is even.
-  bool (*any_beyond)(const Point* points, const Point* references, std::size_t n, double reach);
+  /// Writes first, first + 1, ... of those of n points, empty ones apart, that are within reach of `centre`; returns how
+  /// many. `found` has room for all of them.
+  std::size_t (*find_within)(const Point* points, std::size_t n, const Point& centre, float reach_squared,
+                             std::uint32_t first, std::uint32_t* found);
+
+  /// Largest squared distance of a point from its reference.
+  float (*farthest)(const Point* points, const Point* references, std::size_t n);
+
+  /// Writes the indices of those of n values that are `least` or more; returns how many. `found` has room for all.
+  std::size_t (*find_reached)(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found);
 };
 
 /// The best build that this processor can run, or the one that the environment variable SPOT_INSTRUCTION_SET names

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The kernels, compiled once an instruction set: plain loops for the base, packs of four or eight numbers above it.
+// The kernels, compiled once an instruction set: plain loops for the base, packs of 8 or 16 numbers above it.
 // Everything here has internal linkage and no inline library function is used, so that no code built for one processor
 // can be linked into what another one runs. Every number goes through the same operations in the same order in all.
+// Integers wrap around (-fwrapv).
 #include "kernels.hpp"
 
 namespace {
@@ -9,172 +10,276 @@ namespace {
 using spot::Point;
 using spot::kernels::Lists;
 
+/// Differences of states are seen only where an empty place is on one side.
+constexpr std::int32_t only_empty = Point::empty;
+
 #ifndef __AVX2__
 
-double square_distance(const Point& a, const Point& b) {
-  const double x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  return x * x + y * y + z * z;
+float square(std::int32_t difference) { return static_cast<float>(difference) * static_cast<float>(difference); }
+
+float square_distance(const Point& a, const Point& b, std::int32_t states_seen) {
+  return (square(a.x - b.x) + square(a.y - b.y)) +
+         (square(a.z - b.z) + square((a.state - b.state) & states_seen));
 }
 
-int displace(Point* points, std::size_t n, const Point& middle, double radius, const Point& by) {
+void add(Point& point, std::int32_t x, std::int32_t y, std::int32_t z) {
+  point.x += x;
+  point.y += y;
+  point.z += z;
+}
+
+int displace(Point* points, std::size_t n, const Point& middle, float radius_squared, const Point& by) {
   int moved = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    if (square_distance(points[i], middle) > radius * radius) continue;
-    points[i] = {points[i].x + by.x, points[i].y + by.y, points[i].z + by.z, 0.0};
+    if (!(square_distance(points[i], middle, -1) <= radius_squared)) continue;
+    add(points[i], by.x, by.y, by.z);
     ++moved;
   }
   return moved;
 }
 
-bool any_beyond(const Point* points, const Point* references, std::size_t n, double reach) {
+std::size_t find_within(const Point* points, std::size_t n, const Point& centre, float reach_squared,
+                        std::uint32_t first, std::uint32_t* found) {
+  std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (square_distance(points[i], references[i]) > reach * reach) return true;
-  return false;
+    if (square_distance(points[i], centre, only_empty) <= reach_squared)
+      found[count++] = first + static_cast<std::uint32_t>(i);
+  return count;
+}
+
+float farthest(const Point* points, const Point* references, std::size_t n) {
+  float largest = 0.0f;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float squared = square_distance(points[i], references[i], -1);
+    if (squared > largest) largest = squared;
+  }
+  return largest;
 }
 
 void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                          const spot::kernels::Push& push, Point* pushes) {
-  const double per_square = 1.0 / (push.diameter * push.diameter);
   for (std::size_t i = 0; i < n; ++i) {
     const Point& own = points[grains[i]];
     const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
-    Point sum = {};
+    Point sum = {0, 0, 0, 0};
+    float depth = 0.0f;
     for (std::uint32_t k = 0; k < lists.size[grains[i]]; ++k) {
       const Point& other = points[list[k]];
-      const double s = 1.0 - square_distance(own, other) * per_square;
-      if (!(s > 0.0)) continue;
-      const double scale = push.share * s * (0.5 + s * (0.375 + s * (0.3125 + s * 0.2734375)));
-      sum.x += (scale * (own.x - other.x) + push.shift) - push.shift;
-      sum.y += (scale * (own.y - other.y) + push.shift) - push.shift;
-      sum.z += (scale * (own.z - other.z) + push.shift) - push.shift;
-      if (s > sum.depth) sum.depth = s;
+      const float dx = static_cast<float>(own.x - other.x), dy = static_cast<float>(own.y - other.y),
+                  dz = static_cast<float>(own.z - other.z);
+      const float s = 1.0f - ((dx * dx + dy * dy) + dz * dz) * push.per_square;
+      if (!(s > 0.0f)) continue;
+      const float scale = (push.share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
+      add(sum, static_cast<std::int32_t>(scale * dx), static_cast<std::int32_t>(scale * dy),
+          static_cast<std::int32_t>(scale * dz));
+      if (s > depth) depth = s;
     }
+    __builtin_memcpy(&sum.state, &depth, sizeof depth);
     pushes[i] = sum;
   }
 }
 
+std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (values[i] >= least) found[count++] = static_cast<std::uint32_t>(i);
+  return count;
+}
+
 #else
 
-typedef double Four __attribute__((vector_size(4 * sizeof(double))));
+typedef std::int32_t Quarter __attribute__((vector_size(16), may_alias));  // one point
+typedef std::int32_t Half __attribute__((vector_size(32)));                // two
 
-inline Four load(const Point& point) { return *reinterpret_cast<const Four*>(&point); }
-inline void store(Four values, Point& point) { *reinterpret_cast<Four*>(&point) = values; }
+inline Half join(Quarter a, Quarter b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+inline Quarter low_half(Half p) { return __builtin_shufflevector(p, p, 0, 1, 2, 3); }
+inline Quarter high_half(Half p) { return __builtin_shufflevector(p, p, 4, 5, 6, 7); }
+inline Quarter load_point(const Point& point) { return *reinterpret_cast<const Quarter*>(&point); }
+inline Quarter greater(Quarter a, Quarter b) { return a > b ? a : b; }
 
 #ifdef __AVX512F__
 
-constexpr std::uint32_t width = 8;
-typedef double Pack __attribute__((vector_size(8 * sizeof(double))));
-typedef std::int64_t Mask __attribute__((vector_size(8 * sizeof(std::int64_t))));
+constexpr std::uint32_t width = 16;
+typedef std::int32_t Pack __attribute__((vector_size(64)));
+typedef std::int32_t Unaligned __attribute__((vector_size(64), aligned(4), may_alias));
+typedef float Floats __attribute__((vector_size(64)));
 
-inline Pack join(Four low, Four high) { return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7); }
-inline Four low_half(Pack p) { return __builtin_shufflevector(p, p, 0, 1, 2, 3); }
-inline Four high_half(Pack p) { return __builtin_shufflevector(p, p, 4, 5, 6, 7); }
-inline Pack load_points(const Point* points) { return join(load(points[0]), load(points[1])); }
-inline Pack repeat(const Point& point) { return join(load(point), load(point)); }
-inline void store_points(Pack p, Point* points) {
-  store(low_half(p), points[0]);
-  store(high_half(p), points[1]);
+inline Pack join(Half a, Half b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
+inline Half low_part(Pack p) { return __builtin_shufflevector(p, p, 0, 1, 2, 3, 4, 5, 6, 7); }
+inline Half high_part(Pack p) { return __builtin_shufflevector(p, p, 8, 9, 10, 11, 12, 13, 14, 15); }
 inline Pack load_for_transpose(const Point* points, const std::uint32_t* list, int k) {
-  return join(load(points[list[k]]), load(points[list[k + 4]]));
+  return join(join(load_point(points[list[k]]), load_point(points[list[k + 4]])),
+              join(load_point(points[list[k + 8]]), load_point(points[list[k + 12]])));
 }
-inline Pack even(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); }
-inline Pack odd(Pack a, Pack b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); }
-inline Pack low(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13); }
-inline Pack high(Pack a, Pack b) { return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15); }
-inline Four add_halves(Pack p) { return low_half(p) + high_half(p); }
-inline Four greater_half(Pack p) { return low_half(p) > high_half(p) ? low_half(p) : high_half(p); }
-inline std::int64_t count(Mask m) { return -(m[0] + m[4]); }
+inline Pack repeat(Quarter q) { return join(join(q, q), join(q, q)); }
+/// From each point of a and of b in turn: numbers 0, 0, 1, 1 or 2, 2, 3, 3.
+inline Pack low(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+}
+inline Pack high(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+}
+/// The same by pairs of numbers.
+inline Pack low_pairs(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+}
+inline Pack high_pairs(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+}
+inline Floats swap(Floats p) {
+  return __builtin_shufflevector(p, p, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
+}
+inline Floats swap_pairs(Floats p) {
+  return __builtin_shufflevector(p, p, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
+}
+inline Quarter add_parts(Pack p) {
+  const Half h = low_part(p) + high_part(p);
+  return low_half(h) + high_half(h);
+}
+inline Quarter greatest_part(Pack p) {
+  const Half a = low_part(p), b = high_part(p), h = a > b ? a : b;
+  return greater(low_half(h), high_half(h));
+}
+inline unsigned bits(Pack mask) { return __builtin_ia32_cvtd2mask512(mask); }
+constexpr Pack numbers = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 #else
 
-constexpr std::uint32_t width = 4;
-typedef Four Pack;
-typedef std::int64_t Mask __attribute__((vector_size(4 * sizeof(std::int64_t))));
+constexpr std::uint32_t width = 8;
+typedef Half Pack;
+typedef std::int32_t Unaligned __attribute__((vector_size(32), aligned(4), may_alias));
+typedef float Floats __attribute__((vector_size(32)));
 
-inline Pack load_points(const Point* points) { return load(points[0]); }
-inline Pack repeat(const Point& point) { return load(point); }
-inline void store_points(Pack p, Point* points) { store(p, points[0]); }
-inline Pack load_for_transpose(const Point* points, const std::uint32_t* list, int k) { return load(points[list[k]]); }
-inline Pack even(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 4, 2, 6); }
-inline Pack odd(Pack a, Pack b) { return __builtin_shufflevector(a, b, 1, 5, 3, 7); }
-inline Pack low(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 1, 4, 5); }
-inline Pack high(Pack a, Pack b) { return __builtin_shufflevector(a, b, 2, 3, 6, 7); }
-inline Four add_halves(Pack p) { return p; }
-inline Four greater_half(Pack p) { return p; }
-inline std::int64_t count(Mask m) { return -m[0]; }
+inline Pack load_for_transpose(const Point* points, const std::uint32_t* list, int k) {
+  return join(load_point(points[list[k]]), load_point(points[list[k + 4]]));
+}
+inline Pack repeat(Quarter q) { return join(q, q); }
+inline Pack low(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13); }
+inline Pack high(Pack a, Pack b) { return __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15); }
+inline Pack low_pairs(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13); }
+inline Pack high_pairs(Pack a, Pack b) { return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15); }
+inline Floats swap(Floats p) { return __builtin_shufflevector(p, p, 1, 0, 3, 2, 5, 4, 7, 6); }
+inline Floats swap_pairs(Floats p) { return __builtin_shufflevector(p, p, 2, 3, 0, 1, 6, 7, 4, 5); }
+inline Quarter add_parts(Pack p) { return low_half(p) + high_half(p); }
+inline Quarter greatest_part(Pack p) { return greater(low_half(p), high_half(p)); }
+inline unsigned bits(Pack mask) { return static_cast<unsigned>(__builtin_ia32_movmskps256((Floats)mask)); }
+constexpr Pack numbers = {0, 1, 2, 3, 4, 5, 6, 7};
 
 #endif
 
 /// Points that one pack holds.
 constexpr std::uint32_t points_in_pack = width / 4;
 
-inline Pack all(double value) { return Pack{} + value; }
+inline Pack load(const void* from) { return *static_cast<const Unaligned*>(from); }
+inline void store(Pack p, void* to) { *static_cast<Unaligned*>(to) = p; }
+inline Pack all(std::int32_t value) { return Pack{} + value; }
+inline Floats all(float value) { return Floats{} + value; }
+inline Floats floats(Pack p) { return __builtin_convertvector(p, Floats); }
+inline Pack whole(Floats f) { return __builtin_convertvector(f, Pack); }
 
-/// x^2 + y^2 + z^2 of each point, in all four places of it.
-inline Pack squares(Pack points) {
-  const Pack q = points * points;
-  const Pack pairs = even(q, q) + odd(q, q);
-  return low(pairs, pairs) + high(pairs, pairs);
+/// The square of the four numbers of each point, in all four places of it.
+inline Floats squares(Pack points) {
+  const Floats p = floats(points), q = p * p, pairs = q + swap(q);
+  return pairs + swap_pairs(pairs);
 }
 
-int displace(Point* points, std::size_t n, const Point& middle, double radius, const Point& by) {
-  const Pack centre = repeat(middle), step = repeat(by), radius_squared = all(radius * radius);
-  Mask moved = {};
+int displace(Point* points, std::size_t n, const Point& middle, float radius_squared, const Point& by) {
+  const Pack centre = repeat(load_point(middle)), step = repeat(load_point(by));
+  const Floats limit = all(radius_squared);
+  Pack moved = {};
   for (std::size_t i = 0; i < n; i += points_in_pack) {
-    const Pack p = load_points(points + i);
-    const Mask inside = squares(p - centre) <= radius_squared;  // all ones or all zeros
-    store_points(p + (Pack)(inside & (Mask)step), points + i);
-    moved += inside;
+    const Pack p = load(points + i);
+    const Pack inside = squares(p - centre) <= limit;  // all ones or all zeros
+    store(p + (inside & step), points + i);
+    moved -= inside;
   }
-  return static_cast<int>(count(moved));
+  return add_parts(moved)[0];
 }
 
-bool any_beyond(const Point* points, const Point* references, std::size_t n, double reach) {
-  const Pack reach_squared = all(reach * reach);
-  Mask beyond = {};
-  for (std::size_t i = 0; i < n; i += points_in_pack)
-    beyond += squares(load_points(points + i) - load_points(references + i)) > reach_squared;
-  return count(beyond) != 0;
+std::size_t find_within(const Point* points, std::size_t n, const Point& centre, float reach_squared,
+                        std::uint32_t first, std::uint32_t* found) {
+  const Pack from = repeat(load_point(centre)), seen = repeat(Quarter{-1, -1, -1, only_empty});
+  const Floats limit = all(reach_squared);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; i += points_in_pack) {
+    unsigned inside = bits(squares((load(points + i) - from) & seen) <= limit);
+    for (std::uint32_t k = 0; inside != 0; ++k, inside >>= 4)
+      if (inside & 1u) found[count++] = first + static_cast<std::uint32_t>(i) + k;
+  }
+  return count;
 }
 
-/// Sums over x, y and z, and the largest of s.
-inline Four reduce(Pack x, Pack y, Pack z, Pack s) {
-  const Pack xy = even(x, y) + odd(x, y);
-  const Pack zz = even(z, z) + odd(z, z);
-  const Four sums = add_halves(low(xy, zz) + high(xy, zz));
-  const Four largest = greater_half(s);
-  double depth = largest[0];
-  for (int l = 1; l < 4; ++l) depth = largest[l] > depth ? largest[l] : depth;
-  return Four{sums[0], sums[1], sums[2], depth};
+inline float greatest(Pack floats_as_integers) {
+  // Floats that are not negative are in the order of their bits.
+  const Quarter q = greatest_part(floats_as_integers);
+  std::int32_t largest = q[0];
+  for (int k = 1; k < 4; ++k) largest = q[k] > largest ? q[k] : largest;
+  float value;
+  __builtin_memcpy(&value, &largest, sizeof value);
+  return value;
+}
+
+float farthest(const Point* points, const Point* references, std::size_t n) {
+  Floats largest = all(0.0f);
+  for (std::size_t i = 0; i < n; i += points_in_pack) {
+    const Floats s = squares(load(points + i) - load(references + i));
+    largest = s > largest ? s : largest;
+  }
+  return greatest((Pack)largest);
+}
+
+/// Sums over x, y and z, and the greatest of s.
+inline Quarter reduce(Pack x, Pack y, Pack z, Floats s) {
+  const Pack xy = low(x, y) + high(x, y), zs = low(z, z) + high(z, z);
+  Quarter sums = add_parts(low_pairs(xy, zs) + high_pairs(xy, zs));
+  const float depth = greatest((Pack)s);
+  __builtin_memcpy(&sums[3], &depth, sizeof depth);
+  return sums;
 }
 
 void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                          const spot::kernels::Push& push, Point* pushes) {
-  const Pack per_square = all(1.0 / (push.diameter * push.diameter)), share = all(push.share), shift = all(push.shift);
-  const Pack zero = all(0.0), one = all(1.0);
+  const Floats per_square = all(push.per_square), share = all(push.share), zero = all(0.0f);
   for (std::size_t i = 0; i < n; ++i) {
     const Point& own = points[grains[i]];
     const Pack x = all(own.x), y = all(own.y), z = all(own.z);
-    Pack push_x = zero, push_y = zero, push_z = zero, depth = zero;
+    Pack push_x = {}, push_y = {}, push_z = {};
+    Floats depth = zero;
     const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
-    const std::uint32_t* last = list + lists.size[grains[i]];
-    for (; list < last; list += width) {
-      // As many points as numbers fit in a pack, turned into their x, y and z.
+    __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i+8 < n ? i+8:i]) * lists.capacity);
+    const std::int32_t size = lists.size[grains[i]];
+    for (std::int32_t k = 0; k < size; k += static_cast<std::int32_t>(width), list += width) {
+      // As many points as a pack has numbers, turned into their x, y and z.
       const Pack a = load_for_transpose(points, list, 0), b = load_for_transpose(points, list, 1);
       const Pack c = load_for_transpose(points, list, 2), d = load_for_transpose(points, list, 3);
-      const Pack ab = even(a, b), cd = even(c, d);
-      const Pack dx = x - low(ab, cd), dy = y - low(odd(a, b), odd(c, d)), dz = z - high(ab, cd);
-      const Pack apart = one - (dx * dx + dy * dy + dz * dz) * per_square;
-      const Pack s = apart > zero ? apart : zero;
-      const Pack scale = share * s * (0.5 + s * (0.375 + s * (0.3125 + s * 0.2734375)));
-      push_x += (scale * dx + shift) - shift;
-      push_y += (scale * dy + shift) - shift;
-      push_z += (scale * dz + shift) - shift;
+      const Pack ab = low(a, b), cd = low(c, d);
+      const Floats dx = floats(x - low_pairs(ab, cd)), dy = floats(y - high_pairs(ab, cd)),
+                   dz = floats(z - low_pairs(high(a, b), high(c, d)));
+      const Floats apart = 1.0f - ((dx * dx + dy * dy) + dz * dz) * per_square;
+      const Pack listed = numbers < size - k;
+      const Floats s = (Floats)((Pack)(apart > zero ? apart : zero) & listed);
+      const Floats scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
+      push_x += whole(scale * dx);
+      push_y += whole(scale * dy);
+      push_z += whole(scale * dz);
       depth = s > depth ? s : depth;
     }
-    store(reduce(push_x, push_y, push_z, depth), pushes[i]);
+    *reinterpret_cast<Quarter*>(pushes + i) = reduce(push_x, push_y, push_z, depth);
   }
+}
+
+std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found) {
+  std::size_t count = 0, i = 0;
+  for (; i + width <= n; i += width) {
+    unsigned reached = bits(load(values + i) >= least);
+    for (; reached != 0; reached &= reached - 1)
+      found[count++] = static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(__builtin_ctz(reached));
+  }
+  for (; i < n; ++i)
+    if (values[i] >= least) found[count++] = static_cast<std::uint32_t>(i);
+  return count;
 }
 
 #endif
@@ -184,6 +289,7 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
 namespace spot::kernels {
 
 extern const Kernels SPOT_KERNELS;
-const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &displace, &push_off_neighbours, &any_beyond};
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &displace,     &push_off_neighbours,
+                              &find_within,         &farthest,     &find_reached};
 
 }  // namespace spot::kernels

@@ -29,6 +29,8 @@ void SpotParameters::validate() const {
   require_positive("spot step height", step_height);
   require_positive("spot speed", speed);
   require_positive("spot injection rate", injection_rate);
+  if (!(fixed_volume >= 0.0) || !std::isfinite(fixed_volume))
+    throw InvalidParameter(message("fixed volume is ", fixed_volume, " grains but must be zero (off) or positive"));
 }
 
 double step_width_for(double diffusion_length, double step_height) {
@@ -43,6 +45,8 @@ void RelaxationParameters::validate() const {
   if (!(shell >= 0.0) || !std::isfinite(shell))
     throw InvalidParameter(message("relaxation shell is ", shell, " but must be zero or positive"));
   if (every < 0) throw InvalidParameter(message("relaxation interval is ", every, " but must be zero (never) or more"));
+  if (!(momentum >= 0.0 && momentum < 1.0))
+    throw InvalidParameter(message("relaxation momentum is ", momentum, " but must be from 0 to below 1"));
 }
 
 }  // namespace spot

@@ -15,12 +15,12 @@ double power_of_two_below(double value) { return std::ldexp(1.0, std::ilogb(valu
 
 }  // namespace
 
-Quantum::Quantum(double diameter, double extent) {
+Quantum::Quantum(double diameter, double extent, int bits) {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     throw InvalidParameter(message("grain diameter is ", diameter, " but must be positive and finite"));
   if (!(extent > 0.0) || !std::isfinite(extent))
     throw InvalidParameter(message("extent is ", extent, " but must be positive and finite"));
-  const double fine = power_of_two_below(std::ldexp(diameter, -40));
+  const double fine = power_of_two_below(std::ldexp(diameter, -bits));
   // Twice the spacing at the extent: grains pushed a little beyond it still have exact sums.
   const double coarse = 2.0 * power_of_two_below(extent) * std::numeric_limits<double>::epsilon();
   length_ = std::max(fine, coarse);

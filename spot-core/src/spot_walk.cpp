@@ -51,18 +51,24 @@ Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) c
   const double angle = 2.0 * 3.14159265358979323846 * numbers[2];
   Spot spot{id, 0, orifice.centre, time};
   spot.position += Vector3(from_axis * std::cos(angle), from_axis * std::sin(angle), -parameters_.radius);
-  spot.next_step += exponential(numbers_of_step(parameters_, spot)[0], parameters_.move_rate());
+  if (parameters_.together)
+    spot.next_step = (std::floor(time / parameters_.mean_waiting_time()) + 1.0) * parameters_.mean_waiting_time();
+  else
+    spot.next_step += exponential(numbers_of_step(parameters_, spot)[0], parameters_.move_rate());
   return spot;
 }
 
 Move SpotWalk::step(Spot& spot, const Container& container) const {
   const Vector3 start = spot.position;
   const double when = spot.next_step;
-  const Vector3 step = step_vector(parameters_, numbers_of_step(parameters_, spot)[1]);
-  spot.position = container.keep_spot_inside(start, start + step);
+  const auto numbers = numbers_of_step(parameters_, spot);
+  spot.position = container.keep_spot_inside(start, start + step_vector(parameters_, numbers[1]));
   ++spot.steps;
-  spot.next_step += exponential(numbers_of_step(parameters_, spot)[0], parameters_.move_rate());
-  return {when, spot.id, 0.5 * (start + spot.position), spot.position - start};
+  if (parameters_.together)
+    spot.next_step = std::nearbyint(when / parameters_.mean_waiting_time() + 1.0) * parameters_.mean_waiting_time();
+  else
+    spot.next_step += exponential(numbers_of_step(parameters_, spot)[0], parameters_.move_rate());
+  return {when, spot.id, 0.5 * (start + spot.position), spot.position - start, 1.0, spot.steps, numbers[2]};
 }
 
 }  // namespace spot

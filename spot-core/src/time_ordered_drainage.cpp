@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/time_ordered_drainage.hpp"
 
+#include <algorithm>
+
 #include "spot/displacement.hpp"
 
 namespace spot {
@@ -16,13 +18,20 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
 }
 
 void TimeOrderedDrainage::advance_to(double time) {
-  while (const auto move = population_.next_move(time, container())) carry_out(*move);
+  const bool global = relaxation_parameters_.schedule == RelaxationSchedule::global && relaxation_parameters_.every > 0;
+  const double interval = relaxation_parameters_.every * parameters_.mean_waiting_time();
+  while (const auto move = population_.next_move(time, container())) {
+    while (global && static_cast<double>(relaxed_everywhere_ + 1) * interval <= move->time) relax_everywhere();
+    carry_out(*move);
+  }
 }
 
-void TimeOrderedDrainage::carry_out(const Move& move) {
+void TimeOrderedDrainage::carry_out(Move move) {
   packing_.refresh(container());
   const double reach = parameters_.radius + relaxation_parameters_.shell * packing_.diameter();
   packing_.find_movable(move.middle, reach, near_);
+  if (parameters_.fixed_volume > 0.0)
+    move.weight = fixed_volume_weight(parameters_, move.middle.z() - limits_.outlet, enclosed(move));
   const int moved = displace(packing_, near_, move, parameters_.radius, parameters_.influence);
   ++counters_.moves;
   counters_.grains_moved += moved;
@@ -31,14 +40,48 @@ void TimeOrderedDrainage::carry_out(const Move& move) {
     if (move.middle.z() > container().orifice().centre.z() + parameters_.radius) population_.remove_last_moved();
     return;
   }
-  const int every = relaxation_parameters_.every;
-  if (every > 0 && counters_.moves % every == 0) {
+  if (relaxes_around(move)) {
     packing_.update_lists(container());
-    relaxation_.sweep(packing_, container(), near_);
-    ++counters_.sweeps;
-    counters_.grains_swept += static_cast<std::int64_t>(near_.size());
+    relax(near_);
   }
   if (move.middle.z() - reach < limits_.outlet) take_out_drained();
+}
+
+bool TimeOrderedDrainage::relaxes_around(const Move& move) const {
+  const int k = relaxation_parameters_.every;
+  if (k == 0) return false;
+  switch (relaxation_parameters_.schedule) {
+    case RelaxationSchedule::moves:
+      return counters_.moves % k == 0;
+    case RelaxationSchedule::chance:
+      return move.chance * k < 1.0;
+    case RelaxationSchedule::spot:
+      return move.number % k == 0;
+    default:
+      return false;
+  }
+}
+
+void TimeOrderedDrainage::relax(const std::vector<std::uint32_t>& grains) {
+  relaxation_.sweep(packing_, container(), grains);
+  ++counters_.sweeps;
+  counters_.grains_swept += static_cast<std::int64_t>(grains.size());
+}
+
+void TimeOrderedDrainage::relax_everywhere() {
+  packing_.refresh(container());
+  near_.clear();
+  for (std::uint32_t i = 0; i < packing_.slots(); ++i)
+    if (packing_.present(i) && !packing_.held(i)) near_.push_back(i);
+  relax(near_);
+  ++relaxed_everywhere_;
+}
+
+int TimeOrderedDrainage::enclosed(const Move& move) const {
+  const double squared = parameters_.radius * parameters_.radius;
+  return static_cast<int>(std::count_if(near_.begin(), near_.end(), [&](std::uint32_t i) {
+    return packing_.distance_squared(i, move.middle) <= squared;
+  }));
 }
 
 void TimeOrderedDrainage::take_out_drained() {

@@ -11,22 +11,19 @@ namespace spot {
 
 namespace {
 
-/// One sweep takes back about half of every overlap, so a quarter of its mean square is left.
-constexpr int relief = 4;
-
 /// Most sweeps of a cell in one window; what is left over waits for the next.
-constexpr int most_sweeps = 8;
+constexpr int most_sweeps = 16;
 
-/// A cell with an overlap deeper than this, in diameters, is due whatever its account says. DEM's deepest is 0.013.
+/// A cell with an overlap deeper than this, in diameters, is due once more. DEM's deepest is 0.013.
 constexpr double deepest_overlap = 0.02;
 
 constexpr double removed = std::numeric_limits<double>::infinity();
 
-int moves_until_due(const SpotParameters& spots, double tolerance) {
+double moves_until_due(const SpotParameters& spots, double tolerance) {
   if (!(tolerance > 0.0) || !std::isfinite(tolerance))
     throw InvalidParameter(message("relaxation tolerance is ", tolerance, " but must be positive and finite"));
   const double displacement = spots.influence * spots.step_width;
-  return static_cast<int>(std::clamp(12.0 * tolerance * tolerance / (displacement * displacement), 1.0, 1e9));
+  return std::max(0.1, 12.0 * tolerance * tolerance / (displacement * displacement));
 }
 
 double positive_window(double window) {
@@ -38,10 +35,11 @@ double positive_window(double window) {
 }  // namespace
 
 WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
-                                   const DrainageLimits& limits, double window,
+                                   const DrainageLimits& limits, double window, int threads,
                                    std::shared_ptr<const Container> container, double diameter, double extent,
                                    const std::vector<Grain>& grains)
     : Drainage(spots, relaxation, limits, std::move(container), diameter),
+      workers_(std::make_unique<Workers>(threads)),
       window_(positive_window(window)),
       due_(moves_until_due(spots, relaxation.tolerance * diameter)),
       packing_(diameter, extent, limits.outlet, grains, *container_),
@@ -56,7 +54,7 @@ void WindowedDrainage::advance_to(double time) {
     const double until = static_cast<double>(++windows_) * window_;
     give_birth(until);
     walk(until);
-    packing_.update_lists(container());
+    displace();
     relax();
     const std::size_t drained_before = drained_.size();
     packing_.take_out_below(limits_.outlet, drained_);
@@ -68,25 +66,34 @@ void WindowedDrainage::give_birth(double until) {
   while (next_birth_ <= until) {
     spots_.push_back(walk_.birth(born_, next_birth_, container()));
     next_step_.push_back(spots_.back().next_step);
+    weights_.push_back(1.0);
     next_birth_ += walk_.time_before_birth(++born_);
   }
 }
 
 void WindowedDrainage::walk(double until) {
-  const double inside = container().orifice().centre.z() + parameters_.radius;
-  for (std::size_t k = 0; k < spots_.size(); ++k) {
+  moves_.clear();
+  movers_.clear();
+  for (std::size_t k = 0; k < spots_.size(); ++k)
     while (next_step_[k] <= until) {
-      const Move move = walk_.step(spots_[k], container());
+      moves_.push_back(walk_.step(spots_[k], container()));
+      moves_.back().weight = weights_[k];
+      movers_.push_back(k);
       next_step_[k] = spots_[k].next_step;
-      const int moved = packing_.displace(move, parameters_.radius, parameters_.influence);
-      ++counters_.moves;
-      counters_.grains_moved += moved;
-      if (moved == 0 && move.middle.z() > inside) {
-        // Out at the top of the packing.
-        next_step_[k] = removed;
-        ++removed_;
-      }
     }
+}
+
+void WindowedDrainage::displace() {
+  packing_.displace(moves_, parameters_.radius, parameters_.influence, container(), *workers_, moved_);
+  const double inside = container().orifice().centre.z() + parameters_.radius;
+  for (std::size_t m = 0; m < moves_.size(); ++m) {
+    ++counters_.moves;
+    counters_.grains_moved += moved_[m];
+    weights_[movers_[m]] = fixed_volume_weight(parameters_, moves_[m].middle.z() - limits_.outlet, moved_[m]);
+    if (moved_[m] > 0 || moves_[m].middle.z() <= inside || next_step_[movers_[m]] == removed) continue;
+    // Out at the top of the packing.
+    next_step_[movers_[m]] = removed;
+    ++removed_;
   }
   if (removed_ > spots_.size() / 16) drop_removed();
 }
@@ -96,10 +103,12 @@ void WindowedDrainage::drop_removed() {
   for (std::size_t k = 0; k < spots_.size(); ++k) {
     if (next_step_[k] == removed) continue;
     spots_[kept] = spots_[k];
+    weights_[kept] = weights_[k];
     next_step_[kept++] = next_step_[k];
   }
   spots_.resize(kept);
   next_step_.resize(kept);
+  weights_.resize(kept);
   removed_ = 0;
 }
 
@@ -112,11 +121,12 @@ std::vector<Spot> WindowedDrainage::spots() const {
 
 void WindowedDrainage::relax() {
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    const std::size_t swept = packing_.sweep(relaxation_parameters_, due_, relief, deepest_overlap, container());
+    // Once a window only: a cell that is swept over and over on its own is pushed into its neighbours.
+    const double deepest = sweep == 0 ? deepest_overlap : std::numeric_limits<double>::infinity();
+    const std::size_t swept = packing_.sweep(relaxation_parameters_, due_, deepest, container(), *workers_);
     if (swept == 0) return;
     ++counters_.sweeps;
     counters_.grains_swept += static_cast<std::int64_t>(swept);
-    packing_.update_lists(container());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace spot {
@@ -15,6 +16,13 @@ using Vector3 = Eigen::Vector3d;
 struct WallContact {
   double distance;
   Vector3 normal;
+};
+
+/// A flat wall across an axis.
+struct AxisPlane {
+  int axis;
+  double at;          ///< where it crosses the axis
+  bool grains_below;  ///< else above
 };
 
 /// The walls close to one grain. A grain in a corner touches three planes; eight leaves room for odd shapes.
@@ -53,6 +61,17 @@ class Container {
   /// Fills `contacts` with all walls within `reach` of a grain centre.
   virtual void contacts(const Vector3& centre, double reach, WallContacts& contacts) const = 0;
 
+  /// The flat walls across axes, for which there is a short cut.
+  virtual const std::vector<AxisPlane>& axis_planes() const;
+
+  /// As contacts(), without those of axis_planes().
+  virtual void other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const {
+    this->contacts(centre, reach, contacts);
+  }
+
+  /// May several threads ask for contacts at the same time?
+  virtual bool concurrent() const { return true; }
+
   virtual const Orifice& orifice() const = 0;
 
   /// Where a spot at `start` that wants to step to `target` ends: at least its buffer away from every wall.
@@ -73,6 +92,9 @@ class Wall {
   /// `target`, reflected to the inner side of the surface `buffer` in front of the wall.
   /// Reflection keeps spots that walk along a plane wall uniformly distributed in front of it.
   virtual Vector3 reflect_spot(double buffer, const Vector3& target) const;
+
+  /// The plane across an axis that this wall is, or nothing.
+  virtual std::optional<AxisPlane> axis_plane() const { return std::nullopt; }
 };
 
 /// The plane through `point` with grains on the side that `normal` points to.
@@ -81,6 +103,7 @@ class PlaneWall : public Wall {
   /// Throws InvalidContainer if the normal is zero or not finite.
   PlaneWall(const Vector3& point, const Vector3& normal);
   WallContact nearest(const Vector3& centre) const override;
+  std::optional<AxisPlane> axis_plane() const override;
 
  private:
   Vector3 normal_;
@@ -121,6 +144,8 @@ class WalledContainer : public Container {
 
   bool contains(const Vector3& centre) const override;
   void contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
+  const std::vector<AxisPlane>& axis_planes() const override { return axis_planes_; }
+  void other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
   const Orifice& orifice() const override { return orifice_; }
   Vector3 keep_spot_inside(const Vector3& start, const Vector3& target) const override;
 
@@ -131,6 +156,7 @@ class WalledContainer : public Container {
   };
   Orifice orifice_;
   std::vector<Bounded> walls_;
+  std::vector<AxisPlane> axis_planes_;  // some of them once more
 };
 
 /// How far spot centres stay from the walls.

@@ -15,10 +15,16 @@ struct SpotParameters {
   double step_height = 0.0;     ///< dz: and by dz upwards (length)
   double speed = 0.0;           ///< v_s: mean drift speed of a spot (length / time)
   double injection_rate = 0.0;  ///< nu_s: births per time (1 / time)
+  /// N: a spot always carries the free volume of w N grains, however many it encloses (2010's fixed-volume weighting).
+  /// 0: every grain it encloses moves by -w dr (2006).
+  double fixed_volume = 0.0;
+  bool together = false;  ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
   std::uint64_t seed = 1;
 
-  /// Steps per time of a spot, v_s / dz; the waiting times are exponential.
+  /// Steps per time of a spot, v_s / dz; the waiting times are exponential, unless spots step together.
   double move_rate() const { return speed / step_height; }
+  /// dz / v_s
+  double mean_waiting_time() const { return step_height / speed; }
   /// b_s = Var(x) / (2 z) of the walk. Half of the steps go along x, so Var(dx) = dx^2 / 2 a step and
   /// b_s = dx^2 / (4 dz) (length).
   double diffusion_length() const { return step_width * step_width / (4.0 * step_height); }
@@ -38,14 +44,27 @@ enum class RelaxationStrength {
   half_each,  ///< each grain moves alpha delta / 2 (2010)
 };
 
+/// When the time-ordered driver relaxes: after every k-th move of all spots (2006: k = 1), or as the schedules that
+/// 2010 compares.
+enum class RelaxationSchedule {
+  moves,   ///< around every k-th move of all spots
+  chance,  ///< around a move with probability 1/k
+  spot,    ///< around every k-th move of each spot
+  global,  ///< everywhere, every k mean waiting times of a spot
+};
+
 /// The soft-core relaxation of a packing (2006, section IV; 2010, section 2.3).
 struct RelaxationParameters {
   double alpha = 0.8;                                           ///< share of an overlap taken back in one sweep
   RelaxationStrength strength = RelaxationStrength::half_each;  ///< who moves how far
   double shell = 1.0;  ///< grains farther than R_s + shell diameters from the step's middle are held fixed
-  int every = 1;       ///< time-ordered driver: relax after every so many moves of all spots; 0: never
+  RelaxationSchedule schedule = RelaxationSchedule::moves;
+  int every = 1;  ///< k of the schedule; 0: never
   /// Windowed driver: rms overlap, in diameters, that moves may build up between sweeps.
   double tolerance = 1.5e-3;
+  /// Windowed driver: share of a grain's last correction that is added to the next. Overlaps that spread over many
+  /// grains take many sweeps to go; with momentum they go in fewer.
+  double momentum = 0.0;
 
   /// Share of the overlap by which a movable grain moves against another movable grain.
   double pair_share() const { return strength == RelaxationStrength::half_each ? 0.5 * alpha : alpha; }

@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <cstdint>
+
 namespace spot {
 
-/// A place, or a push, as the vector kernels load it: half a cache line.
-struct alignas(32) Point {
-  double x, y, z;
-  double depth;  ///< zero in a place; in a push, the largest 1 - r^2/d^2 of any neighbour
+/// A place on the grid of the quantum, as the vector kernels load it: a quarter of a cache line.
+///
+/// Coordinates wrap around: only differences of places that are near to each other mean anything, and those are exact.
+/// With a quantum of 2^-24 d or a little less, near means closer than 64 d.
+struct alignas(16) Point {
+  std::int32_t x, y, z;
+  std::int32_t state;  ///< one of the states below; in a push, the bits of a float, the largest 1 - r^2/d^2
+
+  /// States count as a fourth coordinate when distances to a move are measured, so that nothing that must stay is ever
+  /// within reach of one.
+  static constexpr std::int32_t free = 0, held = 1 << 29, empty = 1 << 30;
 };
 
 }  // namespace spot

@@ -10,10 +10,10 @@ namespace spot {
 /// cannot change a bit of the result.
 class Quantum {
  public:
-  /// The larger of 2^-40 diameters, rounded down to a power of two, and the spacing of doubles at
+  /// The larger of 2^-bits diameters, rounded down to a power of two, and the spacing of doubles at
   /// `extent`, the largest coordinate (absolute value) that a grain can have. Lengths in deck units.
   /// Throws InvalidParameter unless both are positive and finite and the quantum is below 1e-6 diameters.
-  Quantum(double diameter, double extent);
+  Quantum(double diameter, double extent, int bits = 40);
 
   double length() const { return length_; }
 

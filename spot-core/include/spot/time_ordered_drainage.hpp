@@ -31,13 +31,18 @@ class TimeOrderedDrainage : public Drainage {
   const Packing& packing() const { return packing_; }
 
  private:
-  void carry_out(const Move& move);
+  void carry_out(Move move);
+  int enclosed(const Move& move) const;
+  bool relaxes_around(const Move& move) const;
+  void relax(const std::vector<std::uint32_t>& grains);
+  void relax_everywhere();
   void take_out_drained();
 
   Packing packing_;
   SpotPopulation population_;
   Relaxation relaxation_;
-  std::vector<std::uint32_t> near_;  // grains around a move; kept to save allocations
+  std::int64_t relaxed_everywhere_ = 0;  // times
+  std::vector<std::uint32_t> near_;      // grains around a move; kept to save allocations
 };
 
 }  // namespace spot

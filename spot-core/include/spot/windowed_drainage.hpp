@@ -14,14 +14,16 @@ namespace spot {
 ///
 /// How much a cell needs is kept in its account, the number of moves that reached into it: n of them, each enclosing
 /// one grain of a touching pair or the other with probability 1/4, add w^2 dx^2 n / 12 to the mean square overlap along
-/// the line of centres. A cell is due when that exceeds the tolerance squared.
+/// the line of centres. A cell is due when that exceeds the tolerance squared, and a sweep pays for that many moves.
+///
+/// With a fixed volume, the weight of a spot's moves is the one that it had at the end of the window before.
 class WindowedDrainage : public Drainage {
  public:
   /// `window`: in the units of the rates. Throws as TimeOrderedDrainage does, and InvalidParameter unless window and
   /// relaxation.tolerance are positive.
   WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
-                   double window, std::shared_ptr<const Container> container, double diameter, double extent,
-                   const std::vector<Grain>& grains);
+                   double window, int threads, std::shared_ptr<const Container> container, double diameter,
+                   double extent, const std::vector<Grain>& grains);
 
   void advance_to(double time) override;
   void replace_grains(const std::vector<Grain>& grains) override;
@@ -32,23 +34,31 @@ class WindowedDrainage : public Drainage {
   std::size_t memory() const override { return packing_.memory(); }
 
   /// Moves into a cell after which it is relaxed.
-  int due() const { return due_; }
+  double due() const { return due_; }
 
  private:
   void give_birth(double until);
   void walk(double until);
+  void displace();
   void relax();
   void drop_removed();
 
+  std::unique_ptr<Workers> workers_;
   double window_;
-  int due_;
+  double due_;
   TiledPacking packing_;
   SpotWalk walk_;
   std::vector<Spot> spots_;        // in order of birth
   std::vector<double> next_step_;  // of each spot; infinite once it is removed
+  std::vector<double> weights_;    // of each spot's moves
   std::size_t removed_ = 0;
   std::int64_t born_ = 0, windows_ = 0;
   double next_birth_;
+
+  // Of the window at hand.
+  std::vector<Move> moves_;
+  std::vector<std::size_t> movers_;  // places in spots_
+  std::vector<int> moved_;           // grains
 };
 
 }  // namespace spot
