@@ -39,16 +39,19 @@ def main():
     interval = comparison.choose_interval(times, options.start, options.end)
     views = {"DEM": comparison.IntervalView(dem, dem_common, interval),
              "spot": comparison.IntervalView(spot, spot_common, interval)}
-    rows = comparison.compare(views["DEM"], views["spot"])
+    progress = Progress("report")
+    rows = comparison.compare(views["DEM"], views["spot"], progress)
 
     print(f"common times: {times[0]:g} to {times[-1]:g} tau, {len(times)} snapshots")
     print(report.describe(views["spot"]))
     print()
     print(report.table(rows))
+    print()
+    print(report.verdict(rows))
 
     os.makedirs(options.output, exist_ok=True)
     report.write_json(os.path.join(options.output, "comparison.json"), rows, views)
-    pictures = report.draw_pictures(options.output, views, Progress("report"))
+    pictures = report.draw_pictures(options.output, views, progress)
     page = os.path.join(options.output, "report.html")
     report.write_html(page, rows, views, pictures)
     print(f"\nreport: {page}")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of a comparison, each a function from two IntervalViews to a matplotlib figure."""
+"""Pictures of what a comparison shows against time, and of the silos. Each is a function from two IntervalViews to a
+matplotlib figure; what they share with the other files of pictures is here, too."""
 
 import matplotlib
 
@@ -10,13 +11,13 @@ import numpy as np  # noqa: E402
 from matplotlib.collections import EllipseCollection  # noqa: E402
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter  # noqa: E402
 
-from .comparison import FLUX_HEIGHTS, SLAB, rdf_edges  # noqa: E402
-from .run_statistics import LAYER_HEIGHT  # noqa: E402
-from .structure import packing_fraction  # noqa: E402
+from .counts import FLUX_HEIGHTS, SLAB, slab_counts  # noqa: E402
+from .packing import fractions  # noqa: E402
 
 STYLE = {"DEM": {"color": "#1b4965", "marker": "o", "markersize": 3},
          "spot": {"color": "#d1495b", "marker": "s", "markersize": 3, "linestyle": "--"}}
 LAYER_COLOURS = ["#1b4965", "#f4a259", "#5fa8d3", "#bc4b51", "#8cb369", "#5b3758"]
+PAPER_STYLE = {"color": "0.5", "linewidth": 1, "linestyle": ":"}
 TIME_LABEL = r"time ($\tau$)"
 
 
@@ -30,7 +31,7 @@ def drained_grains(views):
     left.set(xlabel=TIME_LABEL, ylabel="grains above $z = 0$")
     right.set(xlabel=TIME_LABEL, ylabel=r"outflow (1/$\tau$)")
     right.set_ylim(0, 1.15 * right.get_ylim()[1])
-    _mark_interval([left, right], views)
+    mark_interval([left, right], views)
     left.legend(frameon=False)
     return figure
 
@@ -44,7 +45,7 @@ def fluxes(views):
             crossed = -np.diff(view.run.count_above(height)[view.common])
             axis.plot((times[1:] + times[:-1]) / 2, crossed / np.diff(times), label=name, **STYLE[name])
         axis.set_title(f"$z = {height}\\,d$", fontsize=10)
-    _mark_interval(axes.flat, views)
+    mark_interval(axes.flat, views)
     for axis in axes[1]:
         axis.set_xlabel(TIME_LABEL)
     for axis in axes[:, 0]:
@@ -53,48 +54,13 @@ def fluxes(views):
     return figure
 
 
-def slab_counts(views):
+def density_drop(views):
     """Grains in the slab of 2006, against time."""
     figure, axis = plt.subplots(figsize=(5.5, 3.4), constrained_layout=True)
     for name, view in views.items():
-        count = (view.run.count_above(SLAB[0]) - view.run.count_above(SLAB[1]))[view.common]
-        axis.plot(view.run.times[view.common], count, label=name, **STYLE[name])
+        axis.plot(view.run.times[view.common], slab_counts(view.run)[view.common], label=name, **STYLE[name])
     axis.set(xlabel=TIME_LABEL, ylabel=f"grains in ${SLAB[0]}\\,d < z < {SLAB[1]}\\,d$")
-    _mark_interval([axis], views)
-    axis.legend(frameon=False)
-    return figure
-
-
-def velocity_profiles(views):
-    """Downward velocity across x at the stored heights, mean over the interval."""
-    heights = next(iter(views.values())).run.profile_heights
-    figure, axes = plt.subplots(1, len(heights), figsize=(3.2 * len(heights), 3.2), constrained_layout=True)
-    for index, (axis, height) in enumerate(zip(axes, heights)):
-        for name, view in views.items():
-            profile = view.profile(index)
-            if profile is not None:
-                edges = view.run.profile_edges
-                axis.plot((edges[1:] + edges[:-1]) / 2, profile, label=name, **STYLE[name])
-        axis.set_title(f"$z = {height:g}\\,d$", fontsize=10)
-        axis.set_xlabel("$x$ ($d$)")
-    _note_missing_data(axes)
-    axes[0].set_ylabel(r"$-v_z$ ($d/\tau$)")
-    axes[0].legend(frameon=False)
-    return figure
-
-
-def radial_distribution(views):
-    """g(r) at the start and over the interval."""
-    figure, axis = plt.subplots(figsize=(6.5, 3.8), constrained_layout=True)
-    for name, view in views.items():
-        edges = rdf_edges(view.run)
-        middle = (edges[1:] + edges[:-1]) / 2
-        if name == "DEM":
-            axis.plot(middle, view.rdf(view.initial_rdf_sums()), color="0.6", label="DEM, at the start")
-        axis.plot(middle, view.rdf(view.rdf_sums().sum(axis=0)), label=name, **STYLE[name])
-    _note_missing_data([axis])
-    axis.axhline(1, color="0.8", linewidth=0.8, zorder=0)
-    axis.set(xlabel="$r$ ($d$)", ylabel="$g(r)$", xlim=(0.8, 5), ylim=(0, None))
+    mark_interval([axis], views)
     axis.legend(frameon=False)
     return figure
 
@@ -104,18 +70,16 @@ def packing_quality(views):
     figure, axes = plt.subplots(1, 3, figsize=(10, 3.2), constrained_layout=True)
     for name, view in views.items():
         run, common = view.run, view.common
-        covered = np.where(np.isfinite(run.badness), 1, np.nan)
-        fraction = covered * packing_fraction(run.region_grains, run.region(), run.scene.container())
-        for axis, samples in zip(axes, (fraction, run.contacts, run.badness)):
+        for axis, samples in zip(axes, (fractions(run), run.contacts, run.badness)):
             axis.plot(run.times[common], samples[common], label=name, **STYLE[name])
     for axis, label in zip(axes, ("packing fraction", "contacts a grain", "badness $B$")):
         axis.set(xlabel=TIME_LABEL, ylabel=label)
-    _note_missing_data(axes)
+    note_missing_data(axes)
     axes[2].set_yscale("log")
     axes[2].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axes[2].yaxis.set_major_formatter(FormatStrFormatter("%.0e"))
     axes[2].yaxis.set_minor_formatter(NullFormatter())
-    _mark_interval(axes, views)
+    mark_interval(axes, views)
     axes[0].legend(frameon=False)
     return figure
 
@@ -153,28 +117,15 @@ def _draw_silo(axis, run, index):
         axis.plot([side * container.orifice_radius, side * container.half_width], [0, 0], **wall)
 
 
-def _note_missing_data(axes):
+def note_missing_data(axes):
     """Say so where neither run has anything to show, as in a silo that is too low."""
     for axis in axes:
         if not any(np.isfinite(line.get_ydata()).any() for line in axis.lines):
             axis.text(0.5, 0.5, "no data", transform=axis.transAxes, ha="center", color="0.5")
 
 
-def _mark_interval(axes, views):
+def mark_interval(axes, views):
     """Shade the interval that the table's rates are taken over."""
     interval = next(iter(views.values())).interval
     for axis in axes:
         axis.axvspan(*interval.span, color="0.93", zorder=-1)
-
-
-FIGURES = {
-    "silos": (silos, "The layer of grains at the front wall, coloured by the height it started at "
-                     f"(bands of {LAYER_HEIGHT:g} d)."),
-    "drained_grains": (drained_grains, "Grains left above z = 0, and the outflow. Shaded: the interval compared."),
-    "fluxes": (fluxes, "Flux through four heights. In steady flow each equals the outflow."),
-    "slab_counts": (slab_counts, "Grains in the slab in which 2006 measures the density drop."),
-    "velocity_profiles": (velocity_profiles,
-                          "Downward velocity, from displacements over 2 tau, mean over the interval."),
-    "radial_distribution": (radial_distribution, "g(r) in the structure region, corrected for the slab."),
-    "packing_quality": (packing_quality, "Packing fraction, contacts a grain and badness in the same region."),
-}

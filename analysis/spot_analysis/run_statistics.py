@@ -7,22 +7,26 @@ A statistics file holds what a comparison over any interval needs, in a few hund
 import json
 import math
 import zipfile
-from collections import deque
 from dataclasses import dataclass, fields
+from types import SimpleNamespace
 
 import numpy as np
 
-from . import flow, structure
+from . import (bond_angles, bond_order, flow, free_surface, mixing, particle_diffusion, residence, structure, thickness,
+               velocity_correlation, voronoi)
 from .container import structure_region
 from .dump import find_dumps, read_frames
 from .errors import AnalysisError, DumpError, SceneError
 from .progress import Progress
 from .scene import Scene
+from .snapshot import LAG_TAU, TIME_TOLERANCE, History, Snapshot
 
-FORMAT = "spot-analysis run statistics 1"
-LAG_TAU = 2.0  # between the snapshots that velocities are taken from; the cadence of 2006
-TIME_TOLERANCE = 0.02  # tau; decks round their timestep
-PROFILE_HEIGHTS = np.array([10.0, 30.0, 50.0])
+FORMAT = "spot-analysis run statistics 2"
+# Each has a NAME and a class Measurement: add(snapshot, history) for each snapshot in turn, then arrays(), which go to
+# RunStatistics.measured[NAME].
+CONCEPTS = (velocity_correlation, particle_diffusion, bond_angles, bond_order, free_surface, thickness, voronoi,
+            residence, mixing)
+PROFILE_HEIGHTS = np.array([5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0, 70.0])
 PICTURE_PERIOD = 10.0  # tau; after PICTURE_MANY only every PICTURE_SPARSE
 PICTURE_MANY = 100.0
 PICTURE_SPARSE = 100.0
@@ -51,6 +55,7 @@ class RunStatistics:
     picture_times : (Q,); picture_sizes : (Q,) grains in each picture
     picture_x, picture_z : positions of the front layer's grains in PICTURE_QUANTUM, one picture after the other
     picture_layer : layer of LAYER_HEIGHT in which each of them started
+    measured : the arrays of each of CONCEPTS under its NAME; its class Measurement says which
     """
 
     scene: Scene
@@ -79,6 +84,7 @@ class RunStatistics:
     picture_x: np.ndarray
     picture_z: np.ndarray
     picture_layer: np.ndarray
+    measured: dict
 
     def region(self):
         return structure_region(self.scene.container())
@@ -98,6 +104,8 @@ class RunStatistics:
     def save(self, path):
         header = {"format": FORMAT, "scene": self.scene.as_dict(), "provenance": self.provenance}
         arrays = {name: _compact(getattr(self, name)) for name in ARRAYS}
+        arrays.update({f"{concept}.{name}": _compact(array) for concept, part in self.measured.items()
+                       for name, array in vars(part).items()})
         with open(path, "wb") as handle:
             np.savez_compressed(handle, header=json.dumps(header), **arrays)
 
@@ -114,11 +122,16 @@ def load(path):
                 raise AnalysisError(f"{path}: statistics of another format ('{header['format']}'); "
                                     "measure the dumps again")
             arrays = {name: _roomy(stored[name]) for name in ARRAYS}
+            measured = {concept.NAME: SimpleNamespace() for concept in CONCEPTS}
+            for key in stored.files:
+                if "." in key:
+                    concept, name = key.split(".")
+                    setattr(measured[concept], name, _roomy(stored[key]))
     except OSError as error:
         raise AnalysisError(f"{path}: {error.strerror or error}") from error
     except (KeyError, ValueError, zipfile.BadZipFile) as error:
         raise AnalysisError(f"{path}: not a statistics file of measure.py ({error})") from error
-    return RunStatistics(Scene(**header["scene"]), header["provenance"], **arrays)
+    return RunStatistics(Scene(**header["scene"]), header["provenance"], measured=measured, **arrays)
 
 
 def _compact(array):
@@ -159,15 +172,16 @@ def measure(source, scene, label="dumps", provenance=None, warn=print):
 
 
 class _Recorder:
-    """Collects the statistics while frames go by; keeps the frames of the last LAG_TAU only."""
+    """Collects the statistics while frames go by; keeps those of the last LAG_TAU only."""
 
     def __init__(self, scene):
         self.times = []
         self._scene = scene
         self._container = scene.container()
         self._region = structure_region(self._container)
+        self._history = History(LAG_TAU)
+        self._concepts = {one.NAME: one.Measurement(self._container, self._region) for one in CONCEPTS}
         self._snapshots = []
-        self._recent = deque()
         self._profiles = []
         self._pictures = []
 
@@ -178,8 +192,13 @@ class _Recorder:
         if not self.times:
             self._start(frame.ids, positions)
         self.times.append(time)
-        self._snapshots.append(self._snapshot(frame.ids, positions))
-        self._add_profile(time, frame.ids, positions)
+        snapshot = Snapshot(time, frame.ids, positions, self._container, self._region)
+        self._history.add(snapshot)
+        self._snapshots.append(self._numbers(snapshot))
+        self._add_profile(snapshot)
+        for concept in self._concepts.values():
+            concept.add(snapshot, self._history)
+        snapshot.forget()
         if _is_picture_time(time):
             self._pictures.append((time, *self._front_layer(frame.ids, positions)))
 
@@ -207,11 +226,12 @@ class _Recorder:
                              f"have more volume than the box of {extent[0]:.3g} x {extent[1]:.3g} x {extent[2]:.3g} "
                              "they lie in")
 
-    def _snapshot(self, ids, positions):
-        """Every number of one snapshot by its name in RunStatistics."""
+    def _numbers(self, snapshot):
+        """Numbers of one snapshot by their names in RunStatistics."""
+        positions = snapshot.positions
         inside = positions[positions[:, 2] > 0]
         values = {
-            "grains": len(ids),
+            "grains": len(snapshot.ids),
             "above": flow.count_above(positions[:, 2], self._levels),
             "outside": int(self._container.outside(positions).sum()),
             "largest_wall_overlap": float(self._container.wall_overlap(positions).max(initial=0)),
@@ -222,8 +242,8 @@ class _Recorder:
             "badness": math.nan,
             "rdf_counts": np.zeros(len(structure.RDF_EDGES) - 1, dtype=np.int64),
         }
-        if self._region.is_covered(positions, structure.RDF_RANGE):
-            pairs = structure.region_pairs(positions, self._region)
+        if snapshot.is_covered:
+            pairs = snapshot.pairs
             values.update(
                 region_largest_overlap=float(max(1 - pairs.distance.min(initial=1), 0)),
                 contacts=structure.contacts_per_grain(pairs),
@@ -232,16 +252,14 @@ class _Recorder:
             )
         return values
 
-    def _add_profile(self, time, ids, positions):
+    def _add_profile(self, snapshot):
         """Velocities from the snapshot LAG_TAU ago, if there is one."""
-        self._recent.append((time, ids, positions))
-        while self._recent[0][0] < time - LAG_TAU - TIME_TOLERANCE:
-            self._recent.popleft()
-        start, start_ids, start_positions = self._recent[0]
-        if abs(time - start - LAG_TAU) <= TIME_TOLERANCE:
-            first, second = flow.common_grains(start_ids, ids)
-            self._profiles.append((start, time, *flow.velocity_profile(
-                start_positions[first], positions[second], time - start, PROFILE_HEIGHTS, self._edges)))
+        start = self._history.earlier(LAG_TAU)
+        if start is not None:
+            first, second = flow.common_grains(start.ids, snapshot.ids)
+            self._profiles.append((start.time, snapshot.time, *flow.velocity_profile(
+                start.positions[first], snapshot.positions[second], snapshot.time - start.time, PROFILE_HEIGHTS,
+                self._edges)))
 
     def _front_layer(self, ids, positions):
         """x, z (PICTURE_QUANTUM) and starting layer of the grains at the wall y = -half_depth."""
@@ -257,8 +275,9 @@ class _Recorder:
         profiles = list(zip(*self._profiles)) or [[], [], np.empty(bins, dtype=np.int64), np.empty(bins)]
         pictures = list(zip(*self._pictures)) or [[], [], [], []]
         x, z, layer = (np.concatenate([np.empty(0, dtype=np.int64), *part]) for part in pictures[1:])
+        measured = {name: SimpleNamespace(**concept.arrays()) for name, concept in self._concepts.items()}
         return RunStatistics(
-            scene=self._scene, provenance=provenance, times=np.array(self.times), levels=self._levels,
+            scene=self._scene, measured=measured, provenance=provenance, times=np.array(self.times), levels=self._levels,
             rdf_edges=structure.RDF_EDGES, profile_heights=PROFILE_HEIGHTS, profile_edges=self._edges,
             profile_start=np.array(profiles[0]), profile_end=np.array(profiles[1]),
             profile_counts=np.array(profiles[2]), profile_sums=np.array(profiles[3]),

@@ -30,10 +30,18 @@ def region_pairs(positions, region, reach=RDF_RANGE):
     near = positions[region.contains(positions, margin=reach)]
     inside = region.contains(near)
     first, second = close_pairs(near, reach)
-    ends = inside[first].astype(np.int64) + inside[second]
-    kept = ends > 0
-    first, second = first[kept], second[kept]
-    return Pairs(np.linalg.norm(near[first] - near[second], axis=1), ends[kept], int(inside.sum()))
+    ends = inside.astype(np.int8)
+    ends = ends[first] + ends[second]
+    kept = np.flatnonzero(ends)
+    return Pairs(_distances(near, first[kept], second[kept]), ends[kept], int(inside.sum()))
+
+
+def _distances(positions, first, second):
+    """Distances of the pairs (p,); by coordinate, which is several times faster than by rows."""
+    square = np.zeros(len(first))
+    for coordinate in np.ascontiguousarray(positions.T):
+        square += (coordinate[first] - coordinate[second])**2
+    return np.sqrt(square)
 
 
 def close_pairs(positions, reach):
@@ -41,7 +49,7 @@ def close_pairs(positions, reach):
     if len(positions) < 2:
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
     pairs = cKDTree(positions).query_pairs(reach, output_type="ndarray")
-    return pairs[:, 0], pairs[:, 1]
+    return np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1])
 
 
 def largest_overlap(positions):
@@ -49,7 +57,7 @@ def largest_overlap(positions):
     first, second = close_pairs(positions, 1.0)
     if first.size == 0:
         return 0.0
-    return float(1 - np.linalg.norm(positions[first] - positions[second], axis=1).min())
+    return float(1 - _distances(positions, first, second).min())
 
 
 def packing_fraction(grains, region, container):
@@ -72,9 +80,10 @@ def badness(pairs):
 
 
 def rdf_counts(pairs, edges=RDF_EDGES):
-    """Partners of the region's grains in each shell between ``edges``; (len(edges) - 1,) int64, summed over grains."""
-    # numpy sorts all pairs when the weights are integers
-    return np.rint(np.histogram(pairs.distance, edges, weights=pairs.ends.astype(float))[0]).astype(np.int64)
+    """Partners of the region's grains in each shell; (len(edges) - 1,) int64, summed over grains. Shells are even."""
+    # numpy sorts the pairs when it is given edges or whole-number weights
+    counts = np.histogram(pairs.distance, len(edges) - 1, (edges[0], edges[-1]), weights=pairs.ends.astype(float))[0]
+    return np.rint(counts).astype(np.int64)
 
 
 def slab_rdf(counts, grains, frames, region, container, edges=RDF_EDGES):

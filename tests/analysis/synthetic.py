@@ -76,3 +76,36 @@ def sequential_packing(rng, grains, low, high, closest):
         if not len(placed) or np.min(((placed - point)**2).sum(axis=1)) > closest**2:
             placed = np.vstack([placed, point])
     return placed
+
+
+def hcp(cells, spacing):
+    """Hexagonal close-packed crystal of ``cells`` = (nx, ny, nz) orthorhombic cells, neighbours ``spacing`` apart."""
+    corners = np.array(list(itertools.product(*(range(n) for n in cells))), dtype=float)
+    basis = np.array([[0, 0, 0], [0.5, 0.5, 0], [0.5, 5 / 6, 0.5], [0, 1 / 3, 0.5]])
+    return (corners[:, None] + basis).reshape(-1, 3) * spacing * [1, math.sqrt(3), math.sqrt(8 / 3)]
+
+
+def middle_of(points):
+    """The points shifted so that the middle of their extent is the origin in x and y; the lowest keeps its height."""
+    shift = (points.max(axis=0) + points.min(axis=0)) / 2
+    return points - [shift[0], shift[1], 0]
+
+
+def make_snapshots(packings, times, container, region):
+    """Snapshots of packings (n, 3); a row that is not a number is a grain that has left."""
+    from spot_analysis.snapshot import Snapshot
+    for time, packing in zip(times, packings):
+        here = np.isfinite(packing[:, 0])
+        yield Snapshot(float(time), np.flatnonzero(here) + 1, packing[here], container, region)
+
+
+def measure(concept, packings, times, container, region):
+    """The arrays of ``concept``.Measurement after these packings, as RunStatistics.measured holds them."""
+    from types import SimpleNamespace
+
+    from spot_analysis.snapshot import LAG_TAU, History
+    measurement, history = concept.Measurement(container, region), History(LAG_TAU)
+    for snapshot in make_snapshots(packings, times, container, region):
+        history.add(snapshot)
+        measurement.add(snapshot, history)
+    return SimpleNamespace(**measurement.arrays())

@@ -9,6 +9,7 @@ import sys
 
 import numpy as np
 import pytest
+from spot_analysis.figures import SECTIONS as FIGURES
 
 from conftest import ANALYSIS
 from synthetic import LAYER, SCENE, frame_text, write_plug_flow, write_text
@@ -16,7 +17,7 @@ from synthetic import LAYER, SCENE, frame_text, write_plug_flow, write_text
 TIMES = range(0, 26, 2)
 SI_SCENE = {"program": "synthetic", "diameter": 0.003, "gravity": 9.81, "timestep": 1.75e-6,
             "half_width_x": 0.03, "half_depth_y": 0.012, "orifice_radius": 0.036}
-KEYS = {"unit", "dem", "dem_error", "spot", "spot_error", "difference"}
+NUMBERS = {"dem", "dem_error", "spot", "spot_error", "difference", "difference_error"}
 
 
 def script(name, *arguments, python=(sys.executable,), **environment):
@@ -51,12 +52,18 @@ def report(runs):
 def test_schema(report):
     content = report[2]
     for name, quantity in content["quantities"].items():
-        assert set(quantity) == KEYS, name
+        assert set(quantity) == NUMBERS | {"unit", "bound", "met", "paper"}, name
         assert isinstance(quantity["unit"], str)
-        assert all(quantity[key] is None or isinstance(quantity[key], (int, float)) for key in KEYS - {"unit"})
+        assert all(quantity[key] is None or isinstance(quantity[key], (int, float)) for key in NUMBERS)
+        assert quantity["met"] in (None, True, False) and (quantity["bound"] is not None or quantity["met"] is None)
+        assert quantity["paper"] is None or set(quantity["paper"]) == {"dem", "spot", "source"}
     expected = {"outflow", "flux_2d", "flux_10d", "flux_30d", "flux_60d", "slab_count", "density_drop", "badness",
                 "largest_overlap", "packing_fraction", "contacts_per_grain", "rdf_l2", "profile_variance_10d",
-                "profile_variance_30d", "profile_variance_50d", "grains_outside", "flux_10d_over_outflow"}
+                "profile_variance_30d", "profile_variance_50d", "grains_outside", "flux_10d_over_outflow",
+                "outflow_fano", "arrival_30d", "arrival_60d", "arrival_90d", "variance_slope", "variance_intercept",
+                "correlation_length", "correlation_rms", "particle_diffusion", "badness_ratio", "rdf_l2_ratio", "g3_l2_ratio",
+                "crystal_share", "voronoi_fraction", "speed_wall_over_middle", "surface_angle", "stagnant_boundary_10d",
+                "residence_median_10d", "unlike_neighbours", "drained_height_mean"}
     assert expected <= set(content["quantities"])
     assert content["interval"] == {"from": 0, "to": 24, "unit": "tau", "kind": "everything", "snapshots": 13,
                                    "common_from": 0, "common_to": 24}
@@ -84,6 +91,11 @@ def test_known_numbers(report):
     check("largest_overlap", 0.01, 0.01, rel=1e-5)
     check("largest_wall_overlap", 0.0095, 0.0095, rel=1e-5)
     check("grains_outside", 0, 0)
+    check("outflow_fano", 0, 80**2 * 12 / 11 / 80, abs=1e-9)  # half a layer in 2 tau: none and 160 by turns
+    check("drained_height_mean", 6 * LAYER, 3 * LAYER, abs=0.8)
+    check("surface_angle", 0, 0, abs=1e-9)
+    check("speed_wall_over_middle", 1, 1)
+    assert quantities["badness_ratio"]["spot"] == pytest.approx(1, rel=1e-4)
     for height in (10, 30, 50):
         check(f"profile_variance_{height}d", (18**2 - 1) / 12, (18**2 - 1) / 12, rel=1e-5)
     assert quantities["rdf_l2"]["spot"] == pytest.approx(0, abs=0.2)
@@ -98,14 +110,29 @@ def test_table_names_interval_and_every_quantity(report):
     _, stdout, content = report
     assert "interval compared: 0 to 24 tau (everything" in stdout
     assert all(f"\n{name} " in stdout for name in content["quantities"])
+    judged = [quantity["met"] for quantity in content["quantities"].values() if quantity["met"] is not None]
+    assert len(judged) == 2  # the others are for steady flow, which starts later
+    assert f"\nbounds met: {sum(judged)} of 2; " in stdout
+    assert "; 17 not judged: most need steady flow, from 40 tau on" in stdout
+
+
+def test_curves(report):
+    curves = report[2]["curves"]
+    assert {"velocity_correlation", "particle_variance", "profile_variance", "rdf", "g3", "velocity_30d", "residence_10d",
+            "packing_across", "surface", "stagnant_boundary", "drained_by_height"} <= set(curves)
+    for name, curve in curves.items():
+        for run in {"dem", "spot", "initial"} & set(curve):
+            assert len(curve[run]["x"]) == len(curve[run]["y"]) > 0, name
+    assert max(curves["velocity_30d"]["dem"]["y"][1:-1]) == pytest.approx(LAYER / 2, rel=1e-5)
 
 
 def test_report_is_self_contained(report):
     page = (report[0] / "report.html").read_text()
-    assert page.count("data:image/png;base64,") == 7
+    names = [name for section in FIGURES.values() for name in section]
+    assert page.count("data:image/png;base64,") == len(names) == 18
     assert "http" not in page and 'src="data' in page
-    for name in ("silos", "drained_grains", "fluxes", "slab_counts", "velocity_profiles", "radial_distribution",
-                 "packing_quality"):
+    assert page.index("The figures of 2006") < page.index("<table>") < page.index("The figures of 2010")
+    for name in names:
         assert (report[0] / f"{name}.png").stat().st_size > 5000
 
 

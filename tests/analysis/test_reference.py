@@ -65,3 +65,35 @@ def test_fluxes_equal_the_outflow(dem):
     for height in comparison.FLUX_HEIGHTS:
         ratio = measured[f"flux_{height}d_over_outflow"]
         assert ratio.value == pytest.approx(1, abs=max(0.02, 2 * ratio.error))
+
+
+def test_both_halves_of_the_steady_flow_agree(dem):
+    """Within 4 standard errors of the difference, for what neither the falling surface nor the widening flow changes."""
+    first, second = quantities(dem, 200, 252), quantities(dem, 252, 304)
+    for name in ("outflow", "outflow_fano", "correlation_length", "correlation_amplitude", "particle_diffusion",
+                 "contacts_per_grain", "badness", "rdf_first_minimum", "voronoi_fraction_spread", "speed_wall_over_middle",
+                 "packing_fraction_middle", "packing_wall_over_middle", "profile_variance_10d", "gaussian_variance_20d"):
+        error = np.hypot(first[name].error, second[name].error)
+        assert first[name].value == pytest.approx(second[name].value, abs=4 * error), name
+
+
+def test_structure_is_that_of_dense_random_flow(dem):
+    """The paper's bond cut-off; the mean over grains of pi/6 over the cell's volume lies above the packing fraction by the
+    relative variance of the volumes; few crystal-like grains."""
+    measured = quantities(dem, 200, 304)
+    assert measured["rdf_first_minimum"].value == pytest.approx(1.38, abs=0.015)
+    excess = measured["voronoi_fraction"].value / measured["packing_fraction"].value - 1
+    relative = measured["voronoi_fraction_spread"].value / measured["voronoi_fraction"].value
+    assert excess == pytest.approx(relative**2, abs=0.003)
+    assert 0.01 < measured["crystal_share"].value < 0.04
+
+
+def test_width_of_the_flow_agrees_with_the_line_of_2006(dem):
+    """Slope of the second moments over 40-92 tau: 2.28 in 2006 (there later, and in another packing)."""
+    slope = quantities(dem, 40, 92)["profile_variance_slope"]
+    assert slope.value == pytest.approx(2.28, abs=2 * slope.error)
+
+
+def test_front_is_not_sought_above_the_surface(dem):
+    assert quantities(dem, 200, 304)["arrival_90d"].value is None
+    assert quantities(dem, 40, 92)["arrival_90d"].value == pytest.approx(24, abs=4)

@@ -87,6 +87,34 @@ def test_lammps_reads_the_data_file(silo, tmp_path):
     assert float(re.search(r"weighs (\S+) kg", done.stdout)[1]) == pytest.approx(600 * MASS)
 
 
+@pytest.fixture(scope="module")
+def cut_short(tmp_path_factory):
+    """A pour that gave up before rest: pouring.1.restart is from within the pour (9,000 of 15,000 steps), pouring.2.restart from after it."""
+    out = tmp_path_factory.mktemp("cut_short")
+    done = run("silo", "in.pour", out=out, **{**SCENE, "keep": 1.8, "max_rest": 1})
+    assert done.returncode != 0
+    assert "ERROR: not at rest" in done.stdout
+    assert not (out / "pour" / "packed.restart").exists()
+    return out
+
+
+@pytest.mark.parametrize("resume, begun", [(1, 9000), (2, 18000)])
+def test_pour_goes_on_from_a_restart(cut_short, resume, begun, tmp_path):
+    shutil.copytree(cut_short, tmp_path, dirs_exist_ok=True)
+    screen = run_ok("silo", "in.pour", out=tmp_path, **{**SCENE, "resume": resume, "rest": 1e-2})
+    assert re.search(r"^ *Step .*\n *(\d+)", screen, re.MULTILINE)[1] == str(begun)
+    (step, columns), = read_dump(tmp_path / "pour" / "packed.dump")
+    assert step == 0
+    assert (columns["id"] == np.arange(1, 601)).all()
+    assert overlaps(positions(columns)).max() < 0.02
+
+
+def test_pour_goes_on_as_another_pour(cut_short):
+    done = run("silo", "in.pour", out=cut_short, **{**SCENE, "resume": 1, "pour_speed": 12})
+    assert done.returncode != 0
+    assert "is of another pour" in done.stdout + done.stderr
+
+
 @pytest.mark.parametrize("folder, step", [("pour", 2), ("drain", 2)])
 def test_scene(silo, folder, step):
     scene = json.loads((silo[0] / folder / "scene.json").read_text())
@@ -198,6 +226,7 @@ BAD_POURS = [
     ({"grains": 0}, "grains (0)"),
     ({"flux": 90000}, "flux of 90000"),
     ({"flux": 0}, "flux (0)"),
+    ({"resume": 1}, "pouring.1.restart: resume is 1"),
 ]
 
 

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Infer the parameters of the spot model, with errors, from the dumps of a DEM run."""
+
+import argparse
+import os
+
+from spot_analysis.interpreter import require_packages
+
+require_packages("numpy", "scipy", "matplotlib")
+
+from spot_analysis import (calibration, calibration_output, calibration_plots, calibration_refinement,  # noqa: E402
+                           calibration_response, calibration_spreading, command_line)
+
+EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "examples", "silo", "in.silo_spot")
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(
+        description=__doc__, epilog="Needs the packing at rest (TIMESTEP 0) and snapshots every 2 tau over at least 24 tau "
+        "of steady flow, as dumps with a scene.json beside them. Lengths in grain diameters d, times in tau = sqrt(d/g).")
+    parser.add_argument("dumps", metavar="DUMPS", help="folder, file or wildcard of dumps (text or gzip)")
+    parser.add_argument("--from", dest="start", type=float, metavar="TAU",
+                        help="start of the interval (default: the longest stretch of snapshots from 40 tau on)")
+    parser.add_argument("--to", dest="end", type=float, metavar="TAU", help="end of the interval (default: last snapshot)")
+    parser.add_argument("-o", "--output", metavar="FILE",
+                        help="LAMMPS variables, for 'lmp -in in.silo_spot -var parameters FILE'")
+    parser.add_argument("--json", metavar="FILE", help="parameters, all that was measured, and errors")
+    parser.add_argument("--plots", metavar="FOLDER", help="a picture of every fit")
+    parser.add_argument("--buffer", type=float, default=1.0, metavar="D",
+                        help="distance that spot centres keep from side walls, fix spot's 'buffer' (default: %(default)s d)")
+    parser.add_argument("--spreading", choices=calibration_spreading.METHODS, default="walled_moment",
+                        help="which variance of the v_z profile gives b_s (default: %(default)s)")
+    parser.add_argument("--response", choices=sorted(calibration_response.STORED), default="windowed",
+                        help="what is taken for the difference between what spots do and what grains show: that of fix "
+                        "spot's driver, of spots without relaxation, or none, as 2006 (default: %(default)s)")
+    group = parser.add_argument_group("refinement with lmp")
+    group.add_argument("--refine", type=int, default=0, metavar="N", help="run the deck N times, correct by what it shows")
+    group.add_argument("--lmp", default="lmp", metavar="COMMAND", help="lmp with fix spot (default: %(default)s)")
+    group.add_argument("--deck", default=os.path.normpath(EXAMPLE), metavar="FILE", help="(default: examples/silo/in.silo_spot)")
+    group.add_argument("--refine-time", type=float, default=90.0, metavar="TAU", help="of each run (default: %(default)g tau)")
+    group.add_argument("--fix", default="", metavar="'KEYWORD VALUE ...'", help="more words for fix spot in these runs")
+    command_line.add_scene_options(parser)
+    return parser.parse_args()
+
+
+def main():
+    options = parse_arguments()
+    scene = command_line.scene_from_options(options, options.dumps)
+    measured = calibration.measure(options.dumps, scene, options.start, options.end, options.buffer, options.spreading,
+                                   command_line.print_warning)
+    response = calibration_response.stored_response(options.response)
+    uncorrected = calibration.parameters(measured, calibration_response.stored_response("2006"))
+    result = calibration.parameters(measured, response)
+    if options.refine > 0:
+        result, response = calibration_refinement.refine(
+            measured, response, options.refine, options.deck, options.lmp, options.refine_time, options.fix,
+            command_line.print_warning)
+    print(f"{measured.tracks.span[0]:g} to {measured.tracks.span[1]:g} tau, {len(measured.tracks.times)} snapshots\n")
+    print(calibration_output.table(result, uncorrected))
+    if options.output:
+        write(options.output, calibration_output.lammps_variables(result, options.dumps, measured.tracks.span))
+    if options.json:
+        write(options.json, calibration_output.as_json(measured, result, uncorrected, response, options.dumps))
+    if options.plots:
+        os.makedirs(options.plots, exist_ok=True)
+        for path in calibration_plots.draw(options.plots, measured):
+            print(f"plot: {path}")
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as handle:
+        handle.write(text)
+    print(f"written: {path}")
+
+
+if __name__ == "__main__":
+    command_line.run(main)

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The result of a calibration as a table, as JSON, and as a file that examples/silo/in.silo_spot includes."""
+
+import json
+import math
+
+import numpy as np
+
+from .calibration import STEP_HEIGHT, SYMBOLS, UNITS
+from .calibration_estimate import combine
+from .counts import SLAB
+
+IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "speed": "*v_d/v_tau", "injection": "/v_tau"}
+
+
+def described(estimate, unit):
+    """An Estimate of a single number as JSON takes it; None where it is not known."""
+    value, error = float(estimate.value), float(estimate.error)
+    return {"value": value if math.isfinite(value) else None, "error": error if math.isfinite(error) else None,
+            "unit": unit}
+
+
+def table(parameters, uncorrected):
+    """Lines of text: the five parameters with errors, and what 2006's formulas give."""
+    lines = [f"{'':10} {'value':>10} {'+-':>9}   {'as 2006':>10} {'+-':>9}   unit"]
+    for name, unit in UNITS.items():
+        one, other = parameters[name], uncorrected[name]
+        lines.append(f"{SYMBOLS[name]:10} {float(one.value):10.4g} {float(one.error):9.2g}   {float(other.value):10.4g} "
+                     f"{float(other.error):9.2g}   {unit}")
+    return "\n".join(lines)
+
+
+def lammps_variables(parameters, source, span):
+    """Text that gives the deck's variables the values of ``parameters``, in the deck's units through v_d and v_tau.
+
+    To be included between these and the deck's own ``variable ... index``, which then leave alone what is set already.
+    """
+    lines = [f"# Calibrated by analysis/calibrate.py on {source}, {span[0]:g}-{span[1]:g} tau",
+             "# lmp -in in.silo_spot -var parameters THIS_FILE"]
+    for name, factor in IN_THE_DECK.items():
+        value, error = float(parameters[name].value), float(parameters[name].error)
+        number = f"$({value:.6g}{factor})" if factor else f"{value:.6g}"
+        lines.append(f"variable        {name:10} index {number}"
+                     f"  # {SYMBOLS[name]}, +- {error:.2g} {UNITS[name]}")
+    flux = combine(lambda w, grains, rate: w * grains * rate, *(parameters[name] for name in ("influence", "volume",
+                                                                                              "injection")))
+    lines.append(f"# Errors of w, <N> and nu_s go together: nu_s w <N> = {float(flux.value):.4g} +- "
+                 f"{float(flux.error):.2g} /tau. Change all or none.")
+    return "\n".join(lines) + "\n"
+
+
+def as_json(measured, parameters, uncorrected, response, source):
+    """Everything that was measured and fitted, as text."""
+    spreading, correlation, diffusion = measured.spreading, measured.correlation, measured.diffusion
+    speed, b_s = (float(parameters[name].value) for name in ("speed", "diffusion"))
+    content = {
+        "source": source,
+        "interval": {"from": measured.tracks.span[0], "to": measured.tracks.span[1], "unit": "tau",
+                     "snapshots": len(measured.tracks.times)},
+        "parameters": {name: described(parameters[name], unit) for name, unit in UNITS.items()},
+        "uncorrected": {name: described(uncorrected[name], unit) for name, unit in UNITS.items()},
+        "response": {name: described(value, "d" if name in ("radius", "particle_diffusion") else "1")
+                     for name, value in response.items()},
+        "step": {"dz": STEP_HEIGHT, "dx": math.sqrt(4 * b_s * STEP_HEIGHT), "moves": speed / STEP_HEIGHT,
+                 "unit": "d, d, 1/tau"},
+        "measured": {
+            "outflow": described(measured.outflow, "1/tau"),
+            f"grains_missing_{SLAB[0]}d_{SLAB[1]}d": described(measured.drop, "grains"),
+            "front_speed": _front(measured.front),
+            "correlation_decay": described(correlation.decay, "d"),
+            "correlation_radius": described(correlation.radius, "d"),
+            "correlation_radius_without_walls": described(correlation.bulk_radius, "d"),
+            "correlation_amplitude": described(correlation.amplitude, "1"),
+            "correlation_background": described(correlation.background, "1"),
+            "particle_diffusion": described(diffusion.length, "d"),
+            "grains_in_spot": described(measured.grains_in(parameters["radius"]), "grains"),
+            "grains_in_spot_formula": {"value": measured.grains_formula(float(parameters["radius"].value)), "error": None,
+                                       "unit": "grains"},
+            "diffusion_by": {name: described(combine(lambda value: value / 2, line[0]), "d")
+                             for name, line in spreading.lines.items()},
+        },
+        "curves": {
+            "correlation": _curve(correlation.distance, correlation.curve),
+            "variance_of_profile": {name: _curve(spreading.heights, value) for name, value in spreading.variances.items()},
+            "sideways_variance": _curve(diffusion.drop, diffusion.variance),
+        },
+    }
+    return json.dumps(content, indent=1) + "\n"
+
+
+def _front(front):
+    return {"value": front.speed if front else None, "error": front.error if front else None, "unit": "d/tau"}
+
+
+def _curve(places, estimate):
+    return {"at": _numbers(places), "value": _numbers(estimate.value), "error": _numbers(estimate.error)}
+
+
+def _numbers(values):
+    return [float(f"{value:.6g}") if np.isfinite(value) else None for value in values]

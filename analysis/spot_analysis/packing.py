@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Packing fraction, contacts and overlaps in the structure region."""
+
+import math
+
+import numpy as np
+
+from .interval import Value
+from .structure import packing_fraction
+
+
+def fractions(run):
+    """(T,) packing fraction; not a number where the region is not full."""
+    fraction = packing_fraction(run.region_grains, run.region(), run.scene.container())
+    return np.where(np.isfinite(run.badness), fraction, math.nan)
+
+
+def quantities(view):
+    run = view.run
+    return {
+        "packing_fraction": view.mean("1", fractions(run)),
+        "contacts_per_grain": view.mean("1", run.contacts),
+        "badness": view.mean("1", run.badness),
+        "largest_overlap_region": view.mean("d", run.region_largest_overlap),
+        "largest_overlap": Value("d", float(run.largest_overlap[view.snapshots].max())),
+        "largest_wall_overlap": Value("d", float(run.largest_wall_overlap[view.snapshots].max())),
+    }
+
+
+def between(dem, spot):
+    """B of the spot model over that of DEM, the only way in which published values of B compare."""
+    one, other = (view.mean("1", view.run.badness) for view in (dem, spot))
+    if one.value is None or other.value is None or one.value == 0:
+        return {"badness_ratio": Value("1")}
+    ratio = other.value / one.value
+    known = one.error is not None and other.error is not None
+    error = math.hypot(other.error, ratio * one.error) / one.value if known else None
+    return {"badness_ratio": Value("1", ratio, error)}

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Width of the flow against height: Gaussian fits of the v_z profiles and the straight line of their variances (2006).
+
+A spot that walks freely spreads as Var(x) = 2 b_s z, so half the slope of the line is the diffusion length b_s.
+"""
+
+import numpy as np
+
+from .fits import fit_gaussian, fit_line
+from .flow import profile_variance
+
+HEIGHTS = (10, 20, 30, 40, 50, 60)  # d, reported
+MOMENTS = (10, 30, 50)  # d; second moments, which the shape of the tails enters
+LINE = (10, 40)  # d; heights that the line is fitted through
+WALL = 1.0  # d left out at each wall
+
+
+def gaussian_variance(counts, sums, edges):
+    """Variance of the Gaussian, centred on the axis, that fits the profile of mean downward velocity, (...) d^2.
+
+    counts, sums : (..., X) of ``flow.velocity_profile``, added over time
+
+    All bins weigh the same; those within WALL of a wall are left out.
+    """
+    x = (edges[1:] + edges[:-1]) / 2
+    kept = np.abs(x) < edges[-1] - WALL
+    with np.errstate(invalid="ignore", divide="ignore"):
+        velocity = sums[..., kept] / counts[..., kept]
+    return fit_gaussian(x[kept], velocity)[1]**2
+
+
+def line(heights, variances):
+    """slope, intercept through the variances (..., h) at heights within LINE."""
+    used = (heights >= LINE[0]) & (heights <= LINE[1])
+    return fit_line(heights[used], variances[..., used])
+
+
+def mean_variances(view):
+    """Heights (h,) of the stored profiles and their variances over the interval (h,)."""
+    run = view.run
+    rows = view.pair_rows(run.profile_start, run.profile_end)
+    return run.profile_heights, gaussian_variance(run.profile_counts[rows].sum(axis=0),
+                                                  run.profile_sums[rows].sum(axis=0), run.profile_edges)
+
+
+def quantities(view):
+    run = view.run
+    heights, edges = run.profile_heights, run.profile_edges
+    used = np.flatnonzero((heights >= LINE[0]) & (heights <= LINE[1]))
+
+    def moment(counts, sums):
+        return profile_variance(counts, sums, edges, edges[-1] - WALL)
+
+    def gaussian(counts, sums):
+        return gaussian_variance(counts, sums, edges)
+
+    def at(z, width):
+        return _estimate(view, "d^2", [np.searchsorted(heights, z)], width, lambda variances: variances[..., 0])
+
+    def line_of(unit, width, part):
+        return _estimate(view, unit, used, width, lambda variances: fit_line(heights[used], variances)[part])
+
+    return {**{f"profile_variance_{z}d": at(z, moment) for z in MOMENTS},
+            "profile_variance_slope": line_of("d", moment, 0),
+            **{f"gaussian_variance_{z}d": at(z, gaussian) for z in HEIGHTS},
+            "variance_slope": line_of("d", gaussian, 0), "variance_intercept": line_of("d^2", gaussian, 1)}
+
+
+def _estimate(view, unit, indices, width, statistic):
+    """Value of ``statistic``, which maps the variances (..., h) of profiles number ``indices`` to (...); ``width`` maps
+    counts and sums (..., h, X) to variances."""
+    run = view.run
+
+    def of_sums(sums):
+        return statistic(width(*np.split(sums.reshape(*sums.shape[:-1], 2 * len(indices), -1), 2, axis=-2)))
+
+    columns = np.concatenate([run.profile_counts[:, indices], run.profile_sums[:, indices]], axis=1)
+    columns = columns.reshape(len(columns), 2 * len(indices) * (len(run.profile_edges) - 1))
+    return view.estimate_pairs(unit, run.profile_start, run.profile_end, columns, of_sums)
+
+
+def mean_profile(view, index):
+    """Mean downward velocity across x in profile number ``index``, (X,) d/tau; not a number without data."""
+    run = view.run
+    rows = view.pair_rows(run.profile_start, run.profile_end)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return run.profile_sums[rows, index].sum(axis=0) / run.profile_counts[rows, index].sum(axis=0)
+
+
+def fitted_gaussian(view, index, x):
+    """The Gaussian that fits this profile, at x (k,)."""
+    edges = view.run.profile_edges
+    middle = (edges[1:] + edges[:-1]) / 2
+    kept = np.abs(middle) < edges[-1] - WALL
+    amplitude, width = fit_gaussian(middle[kept], mean_profile(view, index)[kept])
+    return amplitude * np.exp(-x**2 / (2 * width**2))

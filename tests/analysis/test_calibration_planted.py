@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Planted parameters: calibrate.py must find again what went into a run of fix spot. Needs lmp; some minutes."""
+
+import os
+
+import numpy as np
+import pytest
+from spot_analysis import calibration, calibration_output, calibration_refinement, calibration_response
+from spot_analysis.bootstrap import RESAMPLES
+from spot_analysis.calibration_estimate import Estimate
+from spot_analysis.progress import Progress
+from spot_analysis.scene import load_scene
+
+from conftest import ANALYSIS
+
+ROOT = ANALYSIS.parent
+LMP = os.environ.get("SPOT_LMP", str(ROOT / "build" / "bin" / "lmp"))
+PLANTED = {"radius": 2.4, "influence": 2.0e-3, "volume": 61.5, "diffusion": 1.4, "speed": 2.8, "injection": 600.0}
+WORDS = "relax tol 0.0015 alpha 1 dz $(0.2*v_d)"
+DURATION = 88.0  # tau
+
+
+@pytest.mark.skipif(not os.access(LMP, os.X_OK), reason=f"no {LMP}")
+def test_planted_parameters_lie_within_their_error_bars(tmp_path):
+    """Three standard errors for each of five; the values of the stored response come from other runs."""
+    planted = {name: Estimate(np.array(value), np.full(RESAMPLES, value)) for name, value in PLANTED.items()}
+    variables = calibration_output.lammps_variables(planted, "nothing", (0, 0))
+    calibration_refinement.run_deck(str(ROOT / "examples" / "silo" / "in.silo_spot"), LMP, variables, str(tmp_path), DURATION,
+                                    WORDS, Progress("planted"))
+    dumps = str(tmp_path / "dumps")
+    measured = calibration.measure(dumps, load_scene(dumps))
+    found = calibration.parameters(measured, calibration_response.stored_response("windowed"))
+    print(calibration_output.table(found, planted))
+    for name, value in PLANTED.items():
+        assert found[name].value == pytest.approx(value, abs=3 * found[name].error), name
