@@ -2,29 +2,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Installs what is needed, builds, drains the silo with the spot model and compares it with the DEM reference.
 #
-#   ./run.sh                 0.5 s of flow, a few minutes
-#   ./run.sh --full          all 1.57 s of the paper
-#   ./run.sh --time 0.2      so many seconds; --seed N: another seed
+#   ./run.sh                 1.57 s of flow, as in the paper; a few minutes
+#   ./run.sh --time 0.2      so many seconds; --seed N: another seed; --threads N: so many threads
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")"
 
-time=0.5
+time=1.57
 seed=1
+threads=1
 while [ $# -gt 0 ]; do
   case "$1" in
-    --full) time=1.57 ;;
-    --time | --seed)
+    --time | --seed | --threads)
       [ $# -ge 2 ] || { echo "run.sh: $1 needs a number" >&2; exit 2; }
       printf -v "${1#--}" '%s' "$2"
       shift ;;
-    -h | --help) sed -n '3,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) echo "run.sh: unknown option '$1'; allowed are --full, --time SECONDS, --seed N" >&2; exit 2 ;;
+    -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "run.sh: unknown option '$1'; allowed are --time SECONDS, --seed N, --threads N" >&2; exit 2 ;;
   esac
   shift
 done
 
-[[ "$time" =~ ^[0-9]*\.?[0-9]+$ && "$seed" =~ ^[1-9][0-9]*$ ]] || {
-  echo "run.sh: --time '$time' must be a positive number of seconds and --seed '$seed' a whole number" >&2
+[[ "$time" =~ ^[0-9]*\.?[0-9]+$ && "$seed" =~ ^[1-9][0-9]*$ && "$threads" =~ ^[1-9][0-9]*$ ]] || {
+  echo "run.sh: --time '$time' must be a positive number of seconds and --seed '$seed' and --threads '$threads' whole numbers" >&2
   exit 2
 }
 
@@ -36,7 +35,7 @@ results=$PWD/results/silo
 rm -rf "$results/dumps"
 mkdir -p "$results"
 echo "== Draining the silo for $time s of flow with fix spot (seed $seed)"
-(cd examples/silo && ../../build/bin/lmp -in in.silo_spot -var time "$time" -var seed "$seed" -var out "$results/dumps" \
+(cd examples/silo && ../../build/bin/lmp -in in.silo_spot -var time "$time" -var seed "$seed" -var threads "$threads" -var out "$results/dumps" \
   -log "$results/log.lammps")
 
 echo "== Comparing with the DEM reference"

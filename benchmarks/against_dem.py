@@ -5,169 +5,19 @@
 Processor time and wall time per simulated second of flow; start-up, warm-up and snapshots are left out. See README.md.
 """
 
-import argparse
-import contextlib
-import ctypes
-import datetime
 import gzip
-import json
 import math
 import os
-import pathlib
 import shutil
-import signal
 import statistics
-import subprocess
 import sys
-import tempfile
-import time
-from dataclasses import dataclass
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-BENCHMARKS = ROOT / "benchmarks"
-EXAMPLE = ROOT / "examples" / "silo"
+from measuring import (BENCHMARKS, ROOT, TAU, WARM_UP, BenchmarkError, Reference, command_line, cost_of, deck_variables,
+                       follow, number, program, provenance, quality, run, run_spot, spot_deck, spread, warn_of_others,
+                       write_json)
+
 DEM_DECKS = ROOT / "liggghts-inputs" / "silo"
-sys.path.insert(0, str(ROOT / "analysis"))
-
-from spot_analysis.interpreter import require_packages  # noqa: E402
-
-require_packages("numpy", "scipy")
-
-from spot_analysis import run_statistics, structure  # noqa: E402
-from spot_analysis.dump import read_frames  # noqa: E402
-from spot_analysis.errors import AnalysisError  # noqa: E402
-
-DIAMETER, GRAVITY = 0.003, 9.81  # m, m/s2: of all three decks
-TAU = math.sqrt(DIAMETER / GRAVITY)  # s
 PAPER_STEP = 1e-4  # tau
-OTHERS_ALLOWED = 0.05  # processors busy with other programs, from which on a time is not to be trusted
-# What the spot deck must not do while it is timed; benchmarks/in.spot takes their place.
-OUTPUT_COMMANDS = {"dump", "dump_modify", "thermo", "thermo_style", "thermo_modify", "run", "restart", "print"}
-
-
-class BenchmarkError(Exception):
-    """What went wrong, in one line or with the end of a program's output."""
-
-
-# --- Programs and the marks that they print ---------------------------------------------------------------------------
-
-@dataclass(frozen=True)
-class Mark:
-    """A line "benchmark: mark STEP ..." of a program, and the clocks (s) when it came: processor time of the program, of
-    everything on this machine, and wall time."""
-
-    step: int
-    words: tuple
-    processor: float
-    machine: float
-    wall: float
-
-
-@dataclass(frozen=True)
-class Output:
-    """sections : name -> marks, by the lines "benchmark: begin NAME"; notes : the words of all other "benchmark:" lines;
-    memory : largest resident memory, all ranks together (MB)."""
-
-    sections: dict
-    notes: list
-    memory: float
-
-
-def processor_clock(pid):
-    """Processor time of all threads of a running process, user and system (s)."""
-    clock = ctypes.c_int()
-    if ctypes.CDLL(None).clock_getcpuclockid(pid, ctypes.byref(clock)):
-        raise BenchmarkError(f"process {pid} has no processor clock")
-    return time.clock_gettime(clock.value)
-
-
-def machine_clock():
-    """Processor time of all processes since the machine started (s)."""
-    # cpu user nice system idle iowait irq softirq steal ...
-    ticks = list(map(int, pathlib.Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:9]))
-    return (sum(ticks) - ticks[3] - ticks[4]) / os.sysconf("SC_CLK_TCK")
-
-
-def process_tree(pid):
-    """``pid`` and all below it: the ranks of mpirun, and the idle helper that Open MPI starts even for a single rank."""
-    children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
-    return [pid, *(process for child in children for process in process_tree(int(child)))]
-
-
-def peak_memory(pid):
-    """MB"""
-    for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines():
-        if line.startswith("VmHWM"):
-            return int(line.split()[1]) / 1000
-    return math.nan
-
-
-def follow(name, command, folder, ranks=1):
-    """Run a program to its end and take the time at each of its marks."""
-    # A program that writes into a pipe keeps its lines back, and a mark must come when it is printed.
-    command = ["stdbuf", "-oL", *map(str, command)]
-    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-    sections, notes, tail, memory = {}, [], [], math.nan
-    process = subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               text=True, errors="replace", start_new_session=True)
-    try:
-        for line in process.stdout:
-            tail = [*tail[-14:], line.rstrip()]
-            words = line.split()
-            if words[:1] != ["benchmark:"]:
-                continue
-            if words[1] == "begin":
-                marks = sections[words[2]] = []
-                print(f"{name}: {words[2].replace('_', ' ')}", file=sys.stderr, flush=True)
-            elif words[1] == "mark":
-                wall, tree = time.monotonic(), process_tree(process.pid)
-                marks.append(Mark(int(words[2]), tuple(words[3:]), sum(map(processor_clock, tree)), machine_clock(), wall))
-                memory = sum(sorted(map(peak_memory, tree))[-ranks:])  # launchers are smaller than ranks
-            else:
-                notes.append(words[1:])
-    finally:
-        # Reached early only by an exception, Ctrl-C among them: no rank may run on.
-        if process.poll() is None and sys.exc_info()[0]:
-            os.killpg(process.pid, signal.SIGTERM)
-        process.wait()
-    if process.returncode or any(line.startswith("ERROR") for line in tail):
-        raise BenchmarkError(f"{name} failed (exit code {process.returncode}). The end of its output:\n  " + "\n  ".join(tail))
-    return Output(sections, notes, memory)
-
-
-def parallel(program, cores):
-    if cores == 1:
-        return [program]
-    options = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-    return ["mpirun", *options, "-np", cores, program]
-
-
-# --- What one program costs -------------------------------------------------------------------------------------------
-
-@dataclass(frozen=True)
-class Cost:
-    """Processor and wall seconds per simulated second, one value a repeat.
-
-    others : processors that other programs kept busy meanwhile; they slow this one down, by memory and caches at least
-    """
-
-    timestep: float  # s
-    steps: int  # in a repeat
-    processor: list
-    wall: list
-    others: float
-    memory: float  # MB
-
-    def summary(self):
-        return {"timestep_tau": self.timestep / TAU, "steps_per_repeat": self.steps,
-                "processor_seconds_per_second": spread(self.processor),
-                "wall_seconds_per_second": spread(self.wall),
-                "core_milliseconds_per_step": statistics.median(self.processor) * self.timestep * 1000,
-                "processors_busy_with_others": self.others, "memory_megabytes": self.memory}
-
-
-def spread(values):
-    return {"median": statistics.median(values), "min": min(values), "max": max(values), "values": values}
 
 
 def ratio(dem, spot):
@@ -176,17 +26,13 @@ def ratio(dem, spot):
             "max": max(dem) / min(spot)}
 
 
-def cost_of(intervals, timestep, memory):
-    """intervals : pairs of marks"""
-    for first, last in intervals:
-        if last.step <= first.step:
-            raise BenchmarkError(f"no step between the marks {first.step} and {last.step}")
-    seconds = [(last.step - first.step) * timestep for first, last in intervals]
-    begin, end = intervals[0][0], intervals[-1][1]
-    others = ((end.machine - begin.machine) - (end.processor - begin.processor)) / (end.wall - begin.wall)
-    return Cost(timestep, intervals[0][1].step - begin.step,
-                [(last.processor - first.processor) / s for (first, last), s in zip(intervals, seconds)],
-                [(last.wall - first.wall) / s for (first, last), s in zip(intervals, seconds)], max(others, 0.0), memory)
+# --- The programs -----------------------------------------------------------------------------------------------------
+
+def parallel(name, cores):
+    if cores == 1:
+        return [name]
+    options = ["--allow-run-as-root"] if os.geteuid() == 0 else []
+    return ["mpirun", *options, "-np", cores, name]
 
 
 def dem_cost(output, section, timestep, repeats):
@@ -194,7 +40,7 @@ def dem_cost(output, section, timestep, repeats):
     marks = output.sections.get(section, [])[-repeats - 1:]
     if len(marks) != repeats + 1:
         raise BenchmarkError(f"{len(marks)} marks in '{section}' where {repeats + 1} are needed")
-    return cost_of(list(zip(marks, marks[1:])), timestep, output.memory)
+    return cost_of([[pair] for pair in zip(marks, marks[1:])], timestep, output.memory)
 
 
 def time_liggghts(options, work):
@@ -219,73 +65,27 @@ def time_lammps(options, work):
     return dem_cost(output, "paper_step", PAPER_STEP * TAU, options.repeats)
 
 
-def deck_variables(variables):
-    return [str(word) for name, value in variables.items() for word in ("-var", name, value)]
-
-
-def spot_deck(fix_options):
-    """The example's deck up to its output, with more words for fix spot, and benchmarks/in.spot after it."""
-    commands = (EXAMPLE / "in.silo_spot").read_text().replace("&\n", " ").splitlines()
-    commands = [command for command in commands if not OUTPUT_COMMANDS & set(command.split()[:1])]
-    fixes = [place for place, command in enumerate(commands) if command.split()[:1] == ["fix"] and command.split()[3] == "spot"]
-    if len(fixes) != 1:
-        raise BenchmarkError(f"{EXAMPLE / 'in.silo_spot'}: {len(fixes)} commands 'fix ID group spot' where 1 was expected")
-    commands[fixes[0]] += " " + fix_options
-    return "\n".join([*commands, f"include {BENCHMARKS / 'in.spot'}", ""])
-
-
 def time_spot(options, work):
-    """Cost, the interval that was timed (tau), and the spots alive and their moves per second in it.
-
-    Leaves the snapshots in ``work``.
-    """
-    deck = work / "in.spot"
-    deck.write_text(spot_deck(options.fix))
-    variables = {"out": work, "warm_up": options.warm_up, "stretch": options.measure, "stretches": options.repeats}
-    output = follow("spot model", [options.lmp, "-in", deck, "-log", "none", *deck_variables(variables)], EXAMPLE)
-    # "timestep DT length STEPS": DT in tau
-    [(_, timestep, _, length)] = output.notes
-    timestep, length = float(timestep), int(length)
-    marks = {mark.step: mark for mark in output.sections["steady"]}
-    end = max(marks)
-    start = end - options.repeats * length
-    intervals = [(marks[end - (n + 1) * length + 1], marks[end - n * length]) for n in reversed(range(options.repeats))]
-    cost = cost_of(intervals, timestep * TAU, output.memory)
-    moves = (int(float(marks[end].words[1])) - int(float(marks[start].words[1]))) / ((end - start) * timestep * TAU)
-    return cost, (start * timestep, end * timestep), {"spots": float(marks[end].words[0]), "moves_per_second": moves}
-
-
-# --- How good the packing is ------------------------------------------------------------------------------------------
-
-def compare_badness(interval, work):
-    """B of the snapshots of both in the region of the analysis: the spot model's at the ends of its stretches, DEM's stored ones
-    of the same interval, or the nearest."""
-    dem = run_statistics.load(EXAMPLE / "reference" / "dem-statistics.npz")
-    region = dem.region()
-    spot = [structure.badness(structure.region_pairs(frame.positions / DIAMETER, region))
-            for frame in read_frames(str(work / "spot.*.dump"))]
-    apart = abs(dem.times - dem.times.clip(*interval))
-    stored = dem.badness[apart <= max(apart.min(), run_statistics.TIME_TOLERANCE)]
-    return {"spot": float(statistics.fmean(spot)), "spot_snapshots": len(spot),
-            "dem": float(stored.mean()), "dem_snapshots": len(stored)}
+    """Runs of the spot model, one a repeat, each with a seed of its own."""
+    return [run_spot(f"spot model, seed {seed}", options.lmp, work / f"spot-{seed}", spot_deck(options.fix),
+                     options.warm_up, options.measure, seed) for seed in range(1, options.repeats + 1)]
 
 
 # --- Report -----------------------------------------------------------------------------------------------------------
 
-def machine():
-    with open("/proc/cpuinfo", encoding="utf-8") as lines:
-        models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return {"model": models[0] if models else "unknown", "processors": os.cpu_count()}
+def mean_quality(runs):
+    """Means over the repeats; B of each beside them."""
+    reference = Reference()
+    each = [quality(one, reference) for one in runs]
 
-
-def commit():
-    """Of the repository, with a plus sign where files differ from it."""
-    def git(*words):
-        return subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=True).stdout.strip()
-    try:
-        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain") else "")
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
+    def mean(key):
+        values = [one[key] for one in each]
+        if isinstance(values[0], dict):
+            return {z: statistics.fmean(value[z] for value in values) for z in values[0]}
+        return statistics.fmean(values)
+    return {**{key: mean(key) for key in each[0]}, "largest_overlap": max(one["largest_overlap"] for one in each),
+            "snapshots": sum(one["snapshots"] for one in each), "snapshots_dem": each[0]["snapshots_dem"],
+            "badness_ratios": [one["badness_ratio"] for one in each]}
 
 
 def table(costs, ratios):
@@ -302,109 +102,61 @@ def table(costs, ratios):
 
 
 def benchmark(options, work):
-    date = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-    spot, interval, flow = time_spot(options, work)
-    badness = compare_badness(interval, work)
+    runs = time_spot(options, work)
+    spot = cost_of([one.pairs for one in runs], runs[0].timestep, max(one.memory for one in runs))
+    interval = runs[0].interval
+    packing = mean_quality(runs)
     paper, double = time_liggghts(options, work)
     lammps = time_lammps(options, work)
 
     names = {"liggghts": ("LIGGGHTS", paper), "liggghts_double_step": ("LIGGGHTS, twice the time step", double),
              "lammps": ("LAMMPS gran/hertz/history", lammps)}
     ratios = {key: ratio(cost.processor, spot.processor) for key, (_, cost) in names.items()}
+    flow = {"spots": statistics.fmean(one.spots() for one in runs),
+            "moves_per_second": statistics.fmean(one.rate("moves") for one in runs)}
     result = {
         **{f"ratio_{key}": value["median"] for key, value in ratios.items()},
-        "badness_ratio": badness["spot"] / badness["dem"],
-        "cores": options.cores, "repeats": options.repeats,
-        "ratios": ratios, "badness": badness,
+        "badness_ratio": packing["badness_ratio"], "cores": options.cores, "repeats": options.repeats,
+        "ratios": ratios, "packing": packing,
         "programs": {"spot": {**spot.summary(), **flow}, **{key: cost.summary() for key, (_, cost) in names.items()}},
         "interval": {"spot_tau": interval, "dem_warm_up_tau": options.dem_warm_up, "dem_steps": options.steps},
-        "fix_options": options.fix, "machine": machine(), "commit": commit(), "date": date,
+        "fix_options": options.fix, **provenance(),
     }
     print(table({**dict(names.values()), "spot model": spot},
                 {name: ratios[key] for key, (name, _) in names.items()}))
-    print(f"B: spot {badness['spot']:.3g}, DEM {badness['dem']:.3g}, ratio {result['badness_ratio']:.3g} "
-          f"({interval[0]:g} to {interval[1]:g} tau); {options.cores} core(s) for DEM, {options.repeats} repeats")
-    busy = [name for name, cost in [*names.values(), ("spot model", spot)] if cost.others > OTHERS_ALLOWED]
-    if busy:
-        print(f"warning: other programs were running beside {', '.join(busy)}: these times are too high", file=sys.stderr)
-    return result
+    print(f"B / B_DEM {packing['badness_ratio']:.3g} ({min(packing['badness_ratios']):.3g} - {max(packing['badness_ratios']):.3g}), "
+          f"B {packing['badness']:.3g} in {packing['snapshots']} snapshots of {options.repeats} runs, B_DEM "
+          f"{packing['badness_dem']:.3g} in {packing['snapshots_dem']}, {interval[0]:g} to {interval[1]:g} tau; outflow "
+          f"{100 * packing['outflow_error']:+.1f} %, packing fraction {100 * packing['packing_fraction_error']:+.1f} % of DEM's; "
+          f"{options.cores} core(s) for DEM, {options.repeats} repeats")
+    warn_of_others({name: cost.others for name, cost in [*names.values(), ("spot model", spot)]})
+    write_json(options.json, result)
 
 
 # --- Command line -----------------------------------------------------------------------------------------------------
 
-def number(kind, least):
-    def read(word):
-        try:
-            value = kind(word)
-        except ValueError:
-            value = None
-        if value is None or not least <= value < math.inf:
-            raise argparse.ArgumentTypeError(f"'{word}' must be {'a whole number' if kind is int else 'a number'}, {least} or more")
-        return value
-    return read
-
-
-def program(word):
-    """Absolute, since every deck runs in a folder of its own."""
-    found = shutil.which(word)
-    if not found:
-        raise argparse.ArgumentTypeError(f"no program '{word}'")
-    return os.path.abspath(found)
-
-
-def parse(arguments):
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--json", metavar="FILE", type=pathlib.Path, help="write all numbers there too")
+def parse():
+    parser = command_line(__doc__)
     parser.add_argument("--cores", type=number(int, 1), default=1, help="MPI ranks of both DEM programs (default 1)")
-    parser.add_argument("--repeats", type=number(int, 1), default=3, help="timed stretches of each program (default 3)")
+    parser.add_argument("--repeats", type=number(int, 1), default=3,
+                        help="runs of the spot model, with seeds 1, 2 ..., and timed stretches of each DEM program (default 3)")
     parser.add_argument("--steps", type=number(int, 1), default=1500, help="DEM steps in a stretch (default 1500)")
     parser.add_argument("--dem-warm-up", type=number(float, 0.01), default=0.5, metavar="TAU",
                         help="DEM flow before the first stretch, at twice the time step (default 0.5)")
-    parser.add_argument("--measure", type=number(float, 0.2), default=3, metavar="TAU",
-                        help="length of a stretch of the spot model (default 3)")
-    parser.add_argument("--warm-up", type=number(float, 0), default=35, metavar="TAU",
-                        help="spot flow before the first stretch (default 35, when the number of spots is steady)")
+    parser.add_argument("--measure", type=number(float, 2), default=18, metavar="TAU",
+                        help="timed part of a run of the spot model (default 18)")
+    parser.add_argument("--warm-up", type=number(float, 0), default=WARM_UP, metavar="TAU",
+                        help=f"spot flow before it (default {WARM_UP}, when the number of spots is steady)")
     parser.add_argument("--fix", default="", metavar="'KEYWORD VALUE ...'", help="more words for fix spot, after those of the example")
-    parser.add_argument("--lmp", default=str(ROOT / "build" / "bin" / "lmp"), help="lmp with fix spot (default build/bin/lmp)")
-    parser.add_argument("--lammps", default="lmp", help="LAMMPS with gran/hertz/history (default the lmp on the PATH)")
-    parser.add_argument("--liggghts", default="liggghts", help="LIGGGHTS (default the one on the PATH)")
-    parser.add_argument("--keep", metavar="DIR", type=pathlib.Path, help="keep decks and snapshots in this new or empty folder")
-    options = parser.parse_args(arguments)
-    for name in ("lmp", "lammps", "liggghts"):
-        try:
-            setattr(options, name, program(getattr(options, name)))
-        except argparse.ArgumentTypeError as error:
-            parser.error(f"--{name}: {error}; build the project or name one with --{name}")
+    parser.add_argument("--lammps", default="lmp", type=program, help="LAMMPS with gran/hertz/history (default the lmp on the PATH)")
+    parser.add_argument("--liggghts", default="liggghts", type=program, help="LIGGGHTS (default the one on the PATH)")
+    options = parser.parse_args()
     if options.cores > os.cpu_count():
         parser.error(f"--cores: {options.cores} asked, this machine has {os.cpu_count()}")
     if options.cores > 1 and not shutil.which("mpirun"):
         parser.error("--cores: no mpirun on the PATH")
-    if options.json and not options.json.absolute().parent.is_dir():
-        parser.error(f"--json: no folder {options.json.absolute().parent}")  # not after ten minutes
-    if options.keep and options.keep.exists() and (not options.keep.is_dir() or any(options.keep.iterdir())):
-        parser.error(f"--keep: {options.keep} is not an empty folder")
     return options
 
 
-def main():
-    options = parse(None)
-    # As Ctrl-C: no program may run on, and the folder must go.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with contextlib.ExitStack() as stack:
-        if options.keep:
-            work = options.keep.absolute()
-            work.mkdir(parents=True, exist_ok=True)
-        else:
-            work = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="against_dem.")))
-        try:
-            result = benchmark(options, work)
-            if options.json:
-                options.json.write_text(json.dumps(result, indent=2) + "\n")
-        except (BenchmarkError, AnalysisError, OSError) as error:
-            sys.exit(f"error: {error}")
-        except KeyboardInterrupt:
-            sys.exit("interrupted")
-
-
 if __name__ == "__main__":
-    main()
+    sys.exit(run(benchmark, parse()))

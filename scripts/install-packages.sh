@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build
   lammps liblammps-dev libfmt-dev mpi-default-dev mpi-default-bin liggghts
   libeigen3-dev librandom123-dev
-  libgtest-dev libgmock-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
   python3 python3-numpy python3-scipy python3-matplotlib python3-pytest
 )
 

@@ -18,8 +18,7 @@ constexpr std::int32_t only_empty = Point::empty;
 float square(std::int32_t difference) { return static_cast<float>(difference) * static_cast<float>(difference); }
 
 float square_distance(const Point& a, const Point& b, std::int32_t states_seen) {
-  return (square(a.x - b.x) + square(a.y - b.y)) +
-         (square(a.z - b.z) + square((a.state - b.state) & states_seen));
+  return (square(a.x - b.x) + square(a.y - b.y)) + (square(a.z - b.z) + square((a.state - b.state) & states_seen));
 }
 
 void add(Point& point, std::int32_t x, std::int32_t y, std::int32_t z) {
@@ -239,6 +238,9 @@ inline Quarter reduce(Pack x, Pack y, Pack z, Floats s) {
   return sums;
 }
 
+/// Lists are fetched this many grains before they are used: they do not fit into the nearer caches.
+constexpr std::size_t ahead = 8;
+
 void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                          const spot::kernels::Push& push, Point* pushes) {
   const Floats per_square = all(push.per_square), share = all(push.share), zero = all(0.0f);
@@ -248,7 +250,8 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
     Pack push_x = {}, push_y = {}, push_z = {};
     Floats depth = zero;
     const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
-    __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i+8 < n ? i+8:i]) * lists.capacity);
+    if (i + ahead < n)
+      __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i + ahead]) * lists.capacity);
     const std::int32_t size = lists.size[grains[i]];
     for (std::int32_t k = 0; k < size; k += static_cast<std::int32_t>(width), list += width) {
       // As many points as a pack has numbers, turned into their x, y and z.
@@ -289,7 +292,7 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 namespace spot::kernels {
 
 extern const Kernels SPOT_KERNELS;
-const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &displace,     &push_off_neighbours,
-                              &find_within,         &farthest,     &find_reached};
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &displace, &push_off_neighbours,
+                              &find_within,         &farthest, &find_reached};
 
 }  // namespace spot::kernels

@@ -51,24 +51,35 @@ Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) c
   const double angle = 2.0 * 3.14159265358979323846 * numbers[2];
   Spot spot{id, 0, orifice.centre, time};
   spot.position += Vector3(from_axis * std::cos(angle), from_axis * std::sin(angle), -parameters_.radius);
-  if (parameters_.together)
-    spot.next_step = (std::floor(time / parameters_.mean_waiting_time()) + 1.0) * parameters_.mean_waiting_time();
-  else
-    spot.next_step += exponential(numbers_of_step(parameters_, spot)[0], parameters_.move_rate());
+  draw_next_step(spot);
   return spot;
 }
 
-Move SpotWalk::step(Spot& spot, const Container& container) const {
-  const Vector3 start = spot.position;
-  const double when = spot.next_step;
+void SpotWalk::draw_next_step(Spot& spot) const {
   const auto numbers = numbers_of_step(parameters_, spot);
-  spot.position = container.keep_spot_inside(start, start + step_vector(parameters_, numbers[1]));
-  ++spot.steps;
-  if (parameters_.together)
-    spot.next_step = std::nearbyint(when / parameters_.mean_waiting_time() + 1.0) * parameters_.mean_waiting_time();
+  spot.turn = numbers[1];
+  spot.chance = numbers[2];
+  const double mean = parameters_.mean_waiting_time();
+  if (!parameters_.together)
+    spot.next_step += exponential(numbers[0], parameters_.move_rate());
+  else if (spot.steps == 0)
+    spot.next_step = (std::floor(spot.next_step / mean) + 1.0) * mean;
   else
-    spot.next_step += exponential(numbers_of_step(parameters_, spot)[0], parameters_.move_rate());
-  return {when, spot.id, 0.5 * (start + spot.position), spot.position - start, 1.0, spot.steps, numbers[2]};
+    spot.next_step = std::nearbyint(spot.next_step / mean + 1.0) * mean;
+}
+
+Move SpotWalk::step(Spot& spot, const Container& container) const {
+  Move move;
+  move.time = spot.next_step;
+  move.spot = spot.id;
+  const Vector3 start = spot.position;
+  spot.position = container.keep_spot_inside(start, start + step_vector(parameters_, spot.turn));
+  move.middle = 0.5 * (start + spot.position);
+  move.step = spot.position - start;
+  move.number = ++spot.steps;
+  move.chance = spot.chance;
+  draw_next_step(spot);
+  return move;
 }
 
 }  // namespace spot

@@ -40,6 +40,9 @@ constexpr double largest_radius_in_diameters = 8.0;
 /// Accounts are kept in sixteenths of a move, and a sweep can cost such parts.
 constexpr std::int32_t parts_of_move = 16;
 
+/// No account goes beyond this, however little is relaxed.
+constexpr std::int32_t deepest_in_debt = 1 << 28;
+
 std::int32_t wrap(std::int64_t quanta) { return static_cast<std::int32_t>(static_cast<std::uint64_t>(quanta)); }
 std::int32_t add(std::int32_t a, std::int32_t b) { return wrap(static_cast<std::int64_t>(a) + b); }
 std::int32_t minus(std::int32_t a, std::int32_t b) { return wrap(static_cast<std::int64_t>(a) - b); }
@@ -359,15 +362,17 @@ void TiledPacking::other_contacts(const Container& container, const Vector3& cen
 
 void TiledPacking::mark_near_wall(std::uint32_t slot, const Container& container) {
   // Where it was listed: the mark holds for as long as the list.
-  const Point& at = references_[slot];
-  const auto margin = static_cast<std::int32_t>(0.5 * skin_ / quantum_.length());
+  const Vector3 at = low_ + from_low(references_[slot], slot / capacity_);
+  const double reach = 0.5 * (diameter_ + skin_);
   std::uint8_t mark = 0;
   for (std::size_t k = 0; k < planes_.size(); ++k) {
-    const std::int32_t beyond = minus(at.*planes_[k].axis, planes_[k].at);
-    if ((planes_[k].grains_below ? -beyond : beyond) < margin) mark |= static_cast<std::uint8_t>(1u << k);
+    // Not in wrapped quanta: far walls would seem near.
+    const AxisPlane& plane = container.axis_planes()[k];
+    if ((plane.grains_below ? plane.at - at[plane.axis] : at[plane.axis] - plane.at) < reach)
+      mark |= static_cast<std::uint8_t>(1u << k);
   }
   WallContacts contacts;
-  other_contacts(container, low_ + from_low(at, slot / capacity_), 0.5 * (diameter_ + skin_), contacts);
+  other_contacts(container, at, reach, contacts);
   if (contacts.begin() != contacts.end()) mark |= near_other_wall;
   near_wall_[slot] = mark;
 }
@@ -384,18 +389,22 @@ void TiledPacking::mark_near_walls(const Container& container) {
 bool TiledPacking::charge(const Row& row, std::int32_t path, std::int32_t limit) {
   bool reached = false;
   for (std::uint32_t cell = row.first; cell < row.last; ++cell) {
-    account_[cell] += parts_of_move;
+    account_[cell] = std::min(account_[cell] + parts_of_move, deepest_in_debt);
     path_[cell] += path;
     reached |= path_[cell] > limit;
   }
   return reached;
 }
 
+void TiledPacking::require_radius(double radius, double diameter) {
+  if (!(radius < largest_radius_in_diameters * diameter))
+    throw InvalidParameter(message("spot radius is ", radius, " but must be below ", largest_radius_in_diameters,
+                                   " grain diameters of ", diameter));
+}
+
 void TiledPacking::displace(const std::vector<Move>& moves, double radius, double influence, const Container& container,
                             Workers& workers, std::vector<int>& moved) {
-  if (!(radius < largest_radius_in_diameters * diameter_))
-    throw InvalidParameter(message("spot radius is ", radius, " but must be below ", largest_radius_in_diameters,
-                                   " grain diameters of ", diameter_));
+  require_radius(radius, diameter_);
   const double quantum = quantum_.length();
   const auto radius_squared = static_cast<float>(square(radius / quantum));
   moved.assign(moves.size(), 0);
@@ -615,7 +624,7 @@ Overlap TiledPacking::largest_overlap() const {
 }
 
 std::size_t TiledPacking::memory() const {
-  return points_.capacity() * (3 * sizeof(Point) + sizeof(std::int64_t) + 2) +
+  return points_.capacity() * (3 * sizeof(Point) + sizeof(std::int64_t) + 3) +
          lists_.capacity() * sizeof(std::uint32_t) + account_.capacity() * 2 * sizeof(std::int32_t);
 }
 

@@ -45,6 +45,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       packing_(diameter, extent, limits.outlet, grains, *container_),
       walk_(spots, *container_),
       next_birth_(walk_.time_before_birth(0)) {
+  TiledPacking::require_radius(spots.radius, diameter);
   require_valid_start();
 }
 

@@ -43,7 +43,8 @@ std::string error_of(const std::string& text) {
 TEST(SpotCommand, ReadsEveryKeyword) {
   const SpotCommand c = parse(
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
-      "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5");
+      "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
+      "accuracy fast momentum 0.3 volume 77.5 steps together threads 4");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -61,10 +62,78 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.window, 0.25);
   EXPECT_EQ(c.relaxation.every, 10);
   EXPECT_EQ(c.relaxation.strength, spot::RelaxationStrength::full_each);
-  EXPECT_EQ(c.relaxation.alpha, 0.7);
+  EXPECT_EQ(c.alpha, 0.7);
   EXPECT_EQ(c.relaxation.shell, 2.0);
   EXPECT_EQ(c.largest_overlap, 0.1);
   EXPECT_EQ(c.average, 5);
+  EXPECT_EQ(c.accuracy, Accuracy::fast);
+  EXPECT_EQ(c.momentum, 0.3);
+  EXPECT_EQ(c.spots.fixed_volume, 77.5);
+  EXPECT_TRUE(c.spots.together);
+  EXPECT_EQ(c.threads, 4);
+}
+
+/// What a command means once the diameter is known.
+SpotCommand resolved(const std::string& more, double diameter = 1.0) {
+  SpotCommand command = parse(complete + more);
+  command.resolve(diameter);
+  return command;
+}
+
+TEST(SpotCommand, ReadsWhatRelaxes) {
+  using spot::RelaxationSchedule;
+  const std::map<std::string, RelaxationSchedule> schedules = {{"every", RelaxationSchedule::moves},
+                                                               {"chance", RelaxationSchedule::chance},
+                                                               {"spot", RelaxationSchedule::spot},
+                                                               {"global", RelaxationSchedule::global}};
+  for (const auto& [word, schedule] : schedules) {
+    const SpotCommand c = resolved("relax " + word + " 7");
+    EXPECT_TRUE(*c.time_ordered) << word;
+    EXPECT_EQ(c.relaxation.schedule, schedule) << word;
+    EXPECT_EQ(c.relaxation.every, 7) << word;
+  }
+  const SpotCommand never = resolved("relax never");
+  EXPECT_TRUE(*never.time_ordered);
+  EXPECT_EQ(never.relaxation.every, 0);
+  const SpotCommand tol = resolved("relax tol 0.002");
+  EXPECT_FALSE(*tol.time_ordered);
+  EXPECT_EQ(tol.relaxation.tolerance, 0.002);
+  EXPECT_EQ(resolved("relax every 99999999999").relaxation.every, 1 << 30) << "more than an int holds";
+}
+
+TEST(SpotCommand, AccuracyDecidesWhatIsLeftOpen) {
+  EXPECT_EQ(parse(complete).accuracy, Accuracy::normal);
+  const std::map<std::string, Accuracy> words = {
+      {"fast", Accuracy::fast}, {"normal", Accuracy::normal}, {"exact", Accuracy::exact}};
+  for (const auto& [word, accuracy] : words) {
+    const SpotCommand c = resolved("accuracy " + word, 2.0);
+    const spot::RelaxationParameters chosen = SpotCommand::relaxation_of(accuracy);
+    EXPECT_EQ(*c.time_ordered, accuracy == Accuracy::exact) << word;
+    EXPECT_EQ(c.relaxation.tolerance, chosen.tolerance) << word;
+    EXPECT_EQ(c.relaxation.alpha, chosen.alpha) << word;
+    EXPECT_EQ(c.relaxation.momentum, chosen.momentum) << word;
+    EXPECT_EQ(c.spots.step_height, 2.0 * SpotCommand::step_height_in_diameters(accuracy)) << word;
+    EXPECT_NO_THROW(c.spots.validate()) << word;
+    EXPECT_NO_THROW(c.relaxation.validate()) << word;
+    // What is given stays.
+    const SpotCommand given = resolved("accuracy " + word + " relax tol 0.01 dz 0.3 alpha 0.9 momentum 0.1");
+    EXPECT_FALSE(*given.time_ordered) << word;
+    EXPECT_EQ(given.relaxation.tolerance, 0.01) << word;
+    EXPECT_EQ(given.relaxation.alpha, 0.9) << word;
+    EXPECT_EQ(given.relaxation.momentum, 0.1) << word;
+    EXPECT_EQ(given.spots.step_height, 0.3) << word;
+  }
+  EXPECT_LT(SpotCommand::relaxation_of(Accuracy::normal).tolerance,
+            SpotCommand::relaxation_of(Accuracy::fast).tolerance);
+}
+
+TEST(SpotCommand, SchedulesOf2006And2010GoWithTheirAlphaAndNoMomentum) {
+  for (const std::string how : {"every 1", "chance 3", "never"}) {
+    const SpotCommand c = resolved("relax " + how);
+    EXPECT_EQ(c.relaxation.alpha, 0.8) << how;
+    EXPECT_EQ(c.relaxation.momentum, 0.0) << how;
+    EXPECT_EQ(resolved("alpha 0.5 relax " + how).relaxation.alpha, 0.5) << how;
+  }
 }
 
 TEST(SpotCommand, ReadsWalls) {
@@ -92,6 +161,20 @@ TEST(SpotCommand, ResolveKeepsWhatWasGiven) {
   EXPECT_EQ(c.spots.radius, 2.0);
 }
 
+TEST(SpotCommand, ResolvingTwiceChangesNothing) {
+  for (const std::string more : {"", "accuracy fast", "accuracy exact", "relax chance 2", "relax tol 1e-3"}) {
+    SpotCommand once = resolved(more, 3.0), twice = resolved(more, 3.0);
+    twice.resolve(3.0);
+    EXPECT_EQ(*once.time_ordered, *twice.time_ordered) << more;
+    EXPECT_EQ(once.relaxation.alpha, twice.relaxation.alpha) << more;
+    EXPECT_EQ(once.relaxation.momentum, twice.relaxation.momentum) << more;
+    EXPECT_EQ(once.relaxation.tolerance, twice.relaxation.tolerance) << more;
+    EXPECT_EQ(once.spots.step_height, twice.spots.step_height) << more;
+    EXPECT_EQ(once.spots.step_width, twice.spots.step_width) << more;
+    EXPECT_EQ(*once.outlet, *twice.outlet) << more;
+  }
+}
+
 TEST(SpotCommand, TheLastOfTwoCounts) { EXPECT_EQ(parse(complete + "seed 2 seed 3").spots.seed, 3U); }
 
 TEST(SpotCommand, ErrorsNameTheWord) {
@@ -103,6 +186,41 @@ TEST(SpotCommand, ErrorsNameTheWord) {
     EXPECT_THAT(error_of(complete + "outlet " + word), HasSubstr("'" + word + "' is not a finite number"));
   for (const std::string word : {"1.0", "0", "-3", "99999999999999999999", "1e3", "+2"})
     EXPECT_THAT(error_of(complete + "seed " + word), HasSubstr("'" + word + "' after keyword 'seed'"));
+}
+
+TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
+  EXPECT_THAT(error_of(complete + "accuracy best"),
+              AllOf(HasSubstr("'accuracy best' is not known"), HasSubstr("'exact' or 'fast' or 'normal'")));
+  EXPECT_THAT(error_of(complete + "steps alone"),
+              AllOf(HasSubstr("'steps alone' is not known"), HasSubstr("'poisson' or 'together'")));
+  EXPECT_THAT(error_of(complete + "strength 0.5"),
+              AllOf(HasSubstr("'strength 0.5' is not known"), HasSubstr("'full' or 'half'")));
+  EXPECT_THAT(error_of(complete + "relax often"),
+              AllOf(HasSubstr("'relax often' is not known"), HasSubstr("'relax tol delta'"), HasSubstr("'relax never'"),
+                    HasSubstr("'every', 'chance', 'spot' and 'global'")));
+  for (const std::string keyword :
+       {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads", "momentum", "volume"})
+    EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
+}
+
+TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
+  for (const std::string word : {"0", "-2", "1.5", "two", "1e3", "99999999999999999999"}) {
+    EXPECT_THAT(error_of(complete + "threads " + word),
+                AllOf(HasSubstr("'" + word + "' after keyword 'threads'"), HasSubstr("1 or more")));
+    for (const std::string how : {"every", "chance", "spot", "global"})
+      EXPECT_THAT(error_of(complete + "relax " + how + " " + word),
+                  AllOf(HasSubstr("'" + word + "' after keyword 'relax'"), HasSubstr("1 or more")));
+  }
+  EXPECT_THAT(error_of(complete + "relax tol 0"), AllOf(HasSubstr("'relax' is 0"), HasSubstr("must be positive")));
+  EXPECT_THAT(error_of(complete + "relax tol -1e-3"), HasSubstr("must be positive"));
+  EXPECT_THAT(error_of(complete + "relax tol x"), HasSubstr("'x' is not a finite number"));
+  EXPECT_THAT(error_of(complete + "momentum -0.1"), AllOf(HasSubstr("'momentum' is -0.1"), HasSubstr("zero or")));
+  EXPECT_THAT(error_of(complete + "volume -1"), AllOf(HasSubstr("'volume' is -1"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "alpha 0"), HasSubstr("must be positive"));
+  EXPECT_THAT(error_of(complete + "volume inf"), HasSubstr("'inf' is not a finite number"));
+  // What the parser cannot know is refused by who uses it.
+  EXPECT_EQ(parse(complete + "threads 99999999999").threads, 1 << 30);
+  EXPECT_THROW(resolved("momentum 1").relaxation.validate(), InvalidParameter);
 }
 
 /// Random commands: either they are read, and then what was read is in range, or the error is InvalidParameter.
@@ -120,7 +238,11 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "1e-320",    "overlap",  "average",
                                                "",          " ",        "\xff\xfe",
                                                "%s",        "+",        "18446744073709551616",
-                                               "silo"};
+                                               "accuracy",  "fast",     "normal",
+                                               "exact",     "momentum", "volume",
+                                               "steps",     "poisson",  "together",
+                                               "threads",   "tol",      "chance",
+                                               "spot",      "global",   "silo"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -136,7 +258,11 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
       EXPECT_GT(command.spots.injection_rate, 0.0);
       EXPECT_GE(command.average, 1);
       EXPECT_TRUE(command.orifice.has_value());
+      EXPECT_GE(command.threads, 1);
+      EXPECT_GE(command.relaxation.every, 0);
+      EXPECT_GE(command.spots.fixed_volume, 0.0);
       command.resolve(1.0);
+      EXPECT_GT(command.relaxation.tolerance, 0.0);
     } catch (const InvalidParameter& error) {
       EXPECT_STRNE(error.what(), "");
     }
@@ -221,14 +347,16 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"radius", in(c.spots.radius / d, " d")},
       {"influence", in(c.spots.influence, "")},
       {"diffusion", in(c.spots.diffusion_length() / d, " d")},
-      {"dz", in(c.spots.step_height / d, " d")},
       {"seed", std::to_string(c.spots.seed)},
-      {"outlet", in((c.orifice->centre.z() - *c.outlet) / d, " d below the orifice")},
+      {"volume", in(c.spots.fixed_volume, "")},
+      {"steps", c.spots.together ? "together" : "poisson"},
+      {"threads", std::to_string(c.threads)},
+      {"outlet", *c.outlet == c.orifice->centre.z() ? "the height of the orifice" : "elsewhere"},
       {"buffer", in(*c.side_buffer / d, " d ") + in(*c.base_buffer / d, " d")},
-      {"window", "the timestep"},
-      {"relax", "every " + std::to_string(c.relaxation.every)},
+      {"window", "see above"},
+      {"accuracy", std::string(c.accuracy == Accuracy::normal ? "normal" : "another") +
+                       ", which sets dz, relax, alpha and momentum"},
       {"strength", c.relaxation.strength == spot::RelaxationStrength::half_each ? "half" : "full"},
-      {"alpha", in(c.relaxation.alpha, "")},
       {"shell", in(c.relaxation.shell, "")},
       {"overlap", in(c.largest_overlap, "")},
       {"average", std::to_string(c.average)}};
@@ -236,11 +364,30 @@ TEST(SpotDocumentation, GivesTheDefaults) {
   const std::string text = section("Default", ".. _Rycroft2006:");
   for (const auto& match : matches(text, "\n\\* (\\w+) = ([^\n]*)")) documented[match[1]] = match[2];
   EXPECT_EQ(documented, defaults);
+  const std::set<std::string> set_by_accuracy = {"dz", "relax", "alpha", "momentum"};
   // Every keyword has a default or is said to have none.
   for (const std::string& keyword : known_keywords()) {
-    if (defaults.count(keyword) > 0) continue;
+    if (defaults.count(keyword) > 0 || set_by_accuracy.count(keyword) > 0) continue;
     EXPECT_THAT(text.substr(0, text.find("have none")), HasSubstr("*" + keyword + "*"));
   }
+}
+
+TEST(SpotDocumentation, SaysWhatEachAccuracySets) {
+  const std::vector<std::string> words = {"fast", "normal", "exact"};
+  std::map<std::string, std::vector<std::string>> documented, expected = {{"accuracy", words}};
+  for (const std::string& word : words) {
+    const SpotCommand c = resolved("accuracy " + word);
+    const bool ordered = *c.time_ordered;
+    expected["dz"].push_back(in(c.spots.step_height, " d"));
+    expected["relax"].push_back(ordered ? "every " + std::to_string(c.relaxation.every)
+                                        : in(c.relaxation.tolerance, "").insert(0, "tol "));
+    expected["alpha"].push_back(in(c.relaxation.alpha, ""));
+    expected["momentum"].push_back(ordered ? "--" : in(c.relaxation.momentum, ""));
+  }
+  for (const auto& match :
+       matches(documentation(), "\n(\\w+)  +(\\S+(?: \\S+)?)  +(\\S+(?: \\S+)?)  +(\\S+(?: \\S+)?)(?=\n)"))
+    documented[match[1]] = {match[2], match[3], match[4]};
+  EXPECT_EQ(documented, expected);
 }
 
 TEST(SpotDocumentation, HasTheSectionsOfLammps) {

@@ -1,11 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What must not change the result: the program, the order of the input, how the time is cut into steps and runs."""
+"""What must not change the result of the time-ordered driver: the program, the order of the input, how the time is cut into steps and runs."""
 
 import numpy as np
 import pytest
 
-from lammps_runs import (DISTRIBUTION, FIX, FRONT_END, LOAD_SPOT, deck, drain, lattice, needs_distribution, positions, programs,
-                         read_dump, run_ok, write_data)
+import lammps_runs
+from lammps_runs import DISTRIBUTION, LOAD_SPOT, lattice, needs_distribution, positions, programs, read_dump, run_ok, write_data
+
+# Of the time-ordered driver; test_windowed.py is about the other one.
+FIX = lammps_runs.FIX + " accuracy exact"
+
+
+def deck(**parts):
+    return lammps_runs.deck(**{"fix": FIX, **parts})
+
+
+def drain(folder, **parts):
+    return lammps_runs.drain(folder, **{"fix": FIX, **parts})
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +122,7 @@ def test_units_and_scale(tmp_path):
     write_data(scaled / "packing.data", lattice(), diameter=d, density=2500)
     drain(scaled, units="si", timestep=0.1 * tau, run="run 10",
           fix=f"fix drain all spot box {-5 * d} {5 * d} {-4 * d} {4 * d} orifice 0 0 0 {3 * d} "
-              f"influence 1e-2 speed {3.2 * d / tau:.15g} injection {100 / tau:.15g} seed 1")
+              f"influence 1e-2 speed {3.2 * d / tau:.15g} injection {100 / tau:.15g} seed 1 accuracy exact")
     lj, si = (read_dump(folder / "grains.dump")[-1][1] for folder in (tmp_path, scaled))
     assert (lj["id"] == si["id"]).all()
     assert np.abs(positions(lj) - lattice()).max() > 0.1

@@ -15,7 +15,7 @@ DUMP_SPOTS = "dump spots all local 1 spots.dump f_drain[1] f_drain[2] f_drain[3]
 def drained(tmp_path_factory):
     """Thermo columns, frames of the grains (every step) and frames of the spots of one drainage."""
     folder = tmp_path_factory.mktemp("drained")
-    screen = run_ok(deck(fix=FIX + " average 10", run="run 30",
+    screen = run_ok(deck(fix=FIX + " average 10 dz 0.4", run="run 30",
                          after=f"dump_modify grains every 1\nthermo 1\n{DUMP_SPOTS}"), folder)
     return thermo(screen), read_dump(folder / "grains.dump"), read_dump(folder / "spots.dump")
 
@@ -23,7 +23,7 @@ def drained(tmp_path_factory):
 def test_drained_grains_vanish_below_the_outlet(drained):
     _, frames, _ = drained
     lowest = min(frame["z"].min() for _, frame in frames)
-    assert -1 <= lowest < -0.5  # outlet: a diameter below the orifice
+    assert 0 <= lowest < 0.3  # outlet: the height of the orifice
     seen = frames[0][1]["id"]
     for (_, before), (_, after) in zip(frames, frames[1:]):
         gone = ~np.isin(before["id"], after["id"])
@@ -55,11 +55,26 @@ def test_largest_overlap(drained):
 
 def test_moves_and_sweeps(drained):
     log, _, spots = drained
-    assert (np.diff(log[MOVES]) >= 0).all() and (np.diff(log[SWEEPS]) >= 0).all()
-    assert (log[SWEEPS] <= log[MOVES]).all()
+    assert (np.diff(log[MOVES]) >= 0).all() and (np.diff(log[SWEEPS]) >= 0).all() and log[SWEEPS][-1] > 30
     # None has reached the top yet: every step that was ever taken is still on the account of a spot.
     taken = [frame["f_drain[5]"].sum() for _, frame in spots]
     assert log[MOVES][:20] == pytest.approx(taken[:20])
+
+
+def test_sweeps_of_the_schedules(tmp_path):
+    """In the order of time a relaxation follows a move, or comes at its time."""
+    sweeps, moves = {}, {}
+    for how in ["every 1", "every 3", "spot 3", "chance 3", "global 2", "never"]:
+        log = thermo(run_ok(deck(fix=f"{FIX} accuracy exact relax {how}", run="run 10"), tmp_path))
+        sweeps[how], moves[how] = log[SWEEPS][-1], log[MOVES][-1]
+    assert len(set(moves.values())) == 1  # none is out at the top yet
+    total = sweeps["every 1"]
+    assert 0 < total <= moves["every 1"]
+    assert sweeps["every 3"] == pytest.approx(total / 3, rel=0.05)
+    assert sweeps["spot 3"] == pytest.approx(total / 3, rel=0.15)
+    assert abs(sweeps["chance 3"] - total / 3) < 5 * np.sqrt(total * 2 / 9)
+    assert abs(sweeps["global 2"] - 1 / (2 * 0.1 / 3.2)) <= 1
+    assert sweeps["never"] == 0
 
 
 def test_spots_in_dump_local(drained):
@@ -72,7 +87,7 @@ def test_spots_in_dump_local(drained):
         assert (np.diff(identity) > 0).all()
         assert (steps == steps.round()).all() and (steps >= 0).all()
         assert (abs(x) <= HALF_WIDTH - 1 + 1e-9).all() and (abs(y) <= HALF_DEPTH - 1 + 1e-9).all()
-        assert z == pytest.approx(-2.6 + 0.1 * steps)  # births R_s below the orifice, steps of 0.1 d
+        assert z == pytest.approx(-2.6 + 0.4 * steps)  # births R_s below the orifice, steps of 0.4 d
     # Poisson: 100 births a time; the last spot ever born has the largest id.
     born = spots[-1][1]["f_drain[1]"].max() + 1
     assert abs(born - 300) < 5 * np.sqrt(300)

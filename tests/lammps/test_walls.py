@@ -66,7 +66,7 @@ def test_orifice_off_centre(tmp_path):
     """The orifice can be anywhere in the base, at any height."""
     points = lattice() + (0, 0, 2)
     write_data(tmp_path / "packing.data", points)
-    run_ok(deck(fix=f"fix drain all spot {WALLS} orifice -1.5 0.5 2 3 {RATES}", run="run 40"), tmp_path)
+    run_ok(deck(fix=f"fix drain all spot {WALLS} orifice -1.5 0.5 2 3 {RATES} outlet 1", run="run 40"), tmp_path)
     first, *_, last = [frame for _, frame in read_dump(tmp_path / "grains.dump")]
     assert len(first["id"]) - len(last["id"]) > 40
     below = last["z"] < 2

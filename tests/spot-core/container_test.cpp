@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "scenes.hpp"
@@ -206,6 +208,68 @@ TEST(ContainerUnit, ContactsAreTheWallsWithinReach) {
   EXPECT_NEAR(contacts.begin()->distance, 0.4, 1e-14);
   EXPECT_EQ(count({7.6, 3.7, 0.3}, 0.5), 3) << "a corner";
   EXPECT_EQ(count({0.0, 0.0, 10.0}, 100.0), 5) << "earlier contacts are cleared";
+}
+
+/// Planes across axes have a short cut; what it leaves out is what other_contacts() gives.
+TEST(ContainerUnit, AxisPlanesAndOtherContactsAreAllContacts) {
+  WalledContainer odd(orifice);
+  odd.add(std::make_unique<PlaneWall>(Vector3(3.0, 9.0, 0.0), Vector3(-2.0, 0.0, 0.0)), 0.0);
+  odd.add(std::make_unique<PlaneWall>(Vector3(0.0, -3.5, 1.0), Vector3(0.0, 1.0, 0.0)), 0.0);
+  odd.add(std::make_unique<PlaneWall>(Vector3(0.0, 0.0, 6.0), Vector3(0.0, 0.0, -0.5)), 0.0);
+  odd.add(std::make_unique<PlaneWall>(Vector3(0.0, 0.0, -1.0), Vector3(0.0, 0.1, 1.0)), 0.0);
+  odd.add(std::make_unique<CylinderWall>(0.0, 0.0, 5.0), 0.0);
+  const auto box = box_silo(-8.0, 8.0, -4.0, 4.0, orifice, buffers);
+  const auto round = cylinder_silo(0.0, 0.0, 8.0, orifice, buffers);
+  EXPECT_EQ(odd.axis_planes().size(), 3u);
+  EXPECT_EQ(box->axis_planes().size(), 4u);
+  EXPECT_TRUE(round->axis_planes().empty());
+  scenes::Draws draws(10);
+  int planes = 0, others = 0;
+  for (const spot::Container* container :
+       {static_cast<const spot::Container*>(&odd), static_cast<const spot::Container*>(box.get()),
+        static_cast<const spot::Container*>(round.get())})
+    for (int k = 0; k < 3000; ++k) {
+      const Vector3 centre = draws.in_box({-9.0, -5.0, -1.0}, {9.0, 5.0, 7.0});
+      WallContacts all, parts;
+      container->contacts(centre, 0.7, all);
+      container->other_contacts(centre, 0.7, parts);
+      others += static_cast<int>(parts.end() - parts.begin());
+      for (const spot::AxisPlane& plane : container->axis_planes()) {
+        const double distance = (centre[plane.axis] - plane.at) * (plane.grains_below ? -1.0 : 1.0);
+        if (distance >= 0.7) continue;
+        Vector3 normal = Vector3::Zero();
+        normal[plane.axis] = plane.grains_below ? -1.0 : 1.0;
+        parts.add({distance, normal});
+        ++planes;
+      }
+      ASSERT_EQ(parts.end() - parts.begin(), all.end() - all.begin()) << centre.transpose();
+      for (const WallContact& contact : all)
+        EXPECT_TRUE(std::any_of(parts.begin(), parts.end(), [&](const WallContact& part) {
+          return std::abs(part.distance - contact.distance) < 1e-12 && (part.normal - contact.normal).norm() < 1e-12;
+        })) << centre.transpose();
+    }
+  EXPECT_GT(planes, 500);
+  EXPECT_GT(others, 500);
+}
+
+/// A container of another kind has no planes unless it says so: all its walls are others.
+TEST(ContainerUnit, ContainersHaveNoAxisPlanesUnlessTheySaySo) {
+  class Bowl : public spot::Container {
+   public:
+    bool contains(const Vector3&) const override { return true; }
+    void contacts(const Vector3& centre, double, WallContacts& contacts) const override {
+      contacts.clear();
+      contacts.add({centre.z(), {0.0, 0.0, 1.0}});
+    }
+    const Orifice& orifice() const override { return ::orifice; }
+    Vector3 keep_spot_inside(const Vector3&, const Vector3& target) const override { return target; }
+  } bowl;
+  EXPECT_TRUE(bowl.axis_planes().empty());
+  EXPECT_TRUE(bowl.concurrent());
+  WallContacts contacts;
+  bowl.other_contacts({0.0, 0.0, 0.25}, 0.5, contacts);
+  ASSERT_EQ(contacts.end() - contacts.begin(), 1);
+  EXPECT_EQ(contacts.begin()->distance, 0.25);
 }
 
 TEST(ContainerUnit, TooManyWallsAtOneGrainAreAnError) {

@@ -65,6 +65,52 @@ TEST(DisplacementUnit, OppositeStepsCancelToTheLastBit) {
   scenes::expect_identical(packing.grains(), before);
 }
 
+TEST(DisplacementUnit, WeightMultipliesTheInfluence) {
+  Packing packing = listed(row);
+  Move move{0.0, 0, {0.0, 0.0, 0.0}, {0.68, 0.0, 0.1}};
+  EXPECT_EQ(move.weight, 1.0);
+  move.weight = 1.5;
+  spot::displace(packing, scenes::all_movable(packing), move, 2.6, 2.5e-3);
+  EXPECT_NEAR(packing.grains()[0].position.x(), -1.5 * 2.5e-3 * 0.68, 2.0 * packing.quantum().length());
+  move.weight = 0.0;
+  EXPECT_EQ(spot::displace(packing, scenes::all_movable(packing), move, 2.6, 2.5e-3), 2);
+  EXPECT_NEAR(packing.grains()[0].position.x(), -1.5 * 2.5e-3 * 0.68, 2.0 * packing.quantum().length());
+}
+
+TEST(FixedVolumeUnit, WeightIsOneWithoutAFixedVolume) {
+  const spot::SpotParameters spots = scenes::paper_spots();
+  ASSERT_EQ(spots.fixed_volume, 0.0);
+  for (const double height : {-9.0, 0.0, 1.0, 99.0})
+    for (const int grains : {0, 1, 80}) EXPECT_EQ(spot::fixed_volume_weight(spots, height, grains), 1.0);
+}
+
+/// Grains that a spot encloses share the same free volume, however many they are.
+TEST(FixedVolumeAnalytic, WeightTimesGrainsIsTheVolume) {
+  spot::SpotParameters spots = scenes::paper_spots();
+  spots.fixed_volume = 77.0;
+  for (const int grains : {20, 40, 77, 100, 300})
+    EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains) * grains, 77.0, 1e-6) << grains;
+  // At the surface, where a spot has less to carry its volume, grains are not thrown about.
+  for (const int grains : {0, 1, 5, 19}) EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains), 3.85, 1e-6);
+}
+
+/// The part of the spot above the outlet, by slices of it (2010, section 3.3).
+TEST(FixedVolumeAnalytic, VolumeIsThatOfThePartAboveTheOutlet) {
+  spot::SpotParameters spots = scenes::paper_spots();
+  spots.fixed_volume = 77.0;
+  const double r = spots.radius, dz = 1e-4;
+  for (double height = -3.0; height <= 3.0; height += 0.25) {
+    double above = 0.0, whole = 0.0;
+    for (double z = -r + 0.5 * dz; z < r; z += dz) {
+      whole += r * r - z * z;
+      if (height + z > 0.0) above += r * r - z * z;
+    }
+    EXPECT_NEAR(spot::fixed_volume_weight(spots, height, 77), above / whole, 1e-4) << height;
+  }
+  EXPECT_NEAR(spot::fixed_volume_weight(spots, -2.6, 0), 0.0, 1e-6) << "all below";
+  EXPECT_NEAR(spot::fixed_volume_weight(spots, 0.0, 40), 77.0 * 0.5 / 40.0, 1e-6);
+}
+
 /// Influence does not couple grains while it is constant, so grains inside all spheres may see moves in any order.
 TEST(DisplacementInvariance, OrderOfMovesChangesNothingInsideAllSpheres) {
   scenes::Draws draws(1);

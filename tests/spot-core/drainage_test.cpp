@@ -26,6 +26,7 @@ using spot::InvalidParameter;
 using spot::Move;
 using spot::Packing;
 using spot::RelaxationParameters;
+using spot::RelaxationSchedule;
 using spot::RelaxationStrength;
 using spot::SpotParameters;
 using spot::SpotPopulation;
@@ -71,16 +72,54 @@ class PlainDrainage {
   void carry_out_moves(int number) {
     for (int k = 0; k < number; ++k) carry_out(*population_.next_move(1e9, *container_));
   }
+  void carry_out_until(double time) {
+    while (const auto move = population_.next_move(time, *container_)) carry_out(*move);
+  }
   double time() const { return time_; }
+  int moves() const { return moves_; }
   const std::vector<Grain>& grains() const { return grains_; }
   const std::vector<Grain>& drained() const { return drained_; }
+  /// Moves that moved grains, and relaxations.
+  int effective_moves() const { return effective_moves_; }
+  int sweeps() const { return sweeps_; }
 
  private:
   double rounded(double length) const { return std::nearbyint(length / q_) * q_; }
 
+  double weight_of(const Move& move) const {
+    if (spots_.fixed_volume == 0.0) return 1.0;
+    int enclosed = 0;
+    for (const Grain& grain : grains_)
+      enclosed += !grain.held && squared(grain.position - move.middle) <= spots_.radius * spots_.radius;
+    return spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed);
+  }
+
+  bool relaxes_around(const Move& move) const {
+    const int k = relaxation_.every;
+    switch (relaxation_.schedule) {
+      case RelaxationSchedule::moves:
+        return k > 0 && moves_ % k == 0;
+      case RelaxationSchedule::chance:
+        return k > 0 && move.chance < 1.0 / k;
+      case RelaxationSchedule::spot:
+        return k > 0 && move.number % k == 0;
+      default:
+        return false;
+    }
+  }
+
   void carry_out(const Move& move) {
+    if (relaxation_.schedule == RelaxationSchedule::global && relaxation_.every > 0) {
+      const double interval = relaxation_.every * spots_.mean_waiting_time();
+      for (; (relaxed_everywhere_ + 1) * interval <= move.time; ++relaxed_everywhere_) {
+        std::vector<bool> movable;
+        for (const Grain& grain : grains_) movable.push_back(!grain.held);
+        relax(movable);
+      }
+    }
     time_ = move.time;
     ++moves_;
+    const double weight = weight_of(move);
     const double reach = spots_.radius + relaxation_.shell;
     std::vector<bool> movable;
     int moved = 0;
@@ -88,14 +127,16 @@ class PlainDrainage {
       const double distance_squared = squared(grain.position - move.middle);
       movable.push_back(!grain.held && distance_squared <= reach * reach);
       if (grain.held || distance_squared > spots_.radius * spots_.radius) continue;
-      for (int axis = 0; axis < 3; ++axis) grain.position[axis] += rounded(-spots_.influence * move.step[axis]);
+      for (int axis = 0; axis < 3; ++axis)
+        grain.position[axis] += rounded(-spots_.influence * weight * move.step[axis]);
       ++moved;
     }
     if (moved == 0) {
       if (move.middle.z() > container_->orifice().centre.z() + spots_.radius) population_.remove_last_moved();
       return;
     }
-    if (relaxation_.every > 0 && moves_ % relaxation_.every == 0) relax(movable);
+    ++effective_moves_;
+    if (relaxes_around(move)) relax(movable);
     for (std::size_t i = grains_.size(); i-- > 0;)
       if (grains_[i].position.z() < outlet_) {
         drained_.push_back(grains_[i]);
@@ -104,6 +145,7 @@ class PlainDrainage {
   }
 
   void relax(const std::vector<bool>& movable) {
+    ++sweeps_;
     std::vector<Vector3> pushes(grains_.size(), Vector3::Zero());
     const auto push = [&](std::size_t i, double scale, const Vector3& along) {
       for (int axis = 0; axis < 3; ++axis) pushes[i][axis] += rounded(scale * along[axis]);
@@ -136,7 +178,7 @@ class PlainDrainage {
   double q_;
   std::vector<Grain> grains_, drained_;
   double time_ = 0.0;
-  int moves_ = 0;
+  int moves_ = 0, effective_moves_ = 0, sweeps_ = 0, relaxed_everywhere_ = 0;
 };
 
 std::vector<Grain> by_id(std::vector<Grain> grains) {
@@ -148,27 +190,54 @@ struct Scheme {
   std::string name;
   RelaxationParameters relaxation;
   double influence;
+  double fixed_volume = 0.0;
+  bool together = false;
 };
 
 void PrintTo(const Scheme& scheme, std::ostream* out) { *out << scheme.name; }
 
 class DrainageBruteForce : public testing::TestWithParam<Scheme> {};
 
+/// The schedules in their own words; moves that moved nobody are not followed by a relaxation.
+void expect_as_many_sweeps_as_scheduled(const PlainDrainage& plain, const RelaxationParameters& relaxation,
+                                        double waiting_time) {
+  const double k = relaxation.every, n = plain.effective_moves();
+  const auto sweeps = static_cast<double>(plain.sweeps());
+  if (k == 0) {
+    EXPECT_EQ(sweeps, 0);
+  } else if (relaxation.schedule == RelaxationSchedule::chance) {
+    EXPECT_NEAR(sweeps, n / k, 5.0 * std::sqrt(n / k * (1.0 - 1.0 / k)));
+  } else if (relaxation.schedule == RelaxationSchedule::global) {
+    EXPECT_EQ(sweeps, std::floor(plain.time() / (k * waiting_time) + 1e-9));
+  } else if (k == 1) {
+    EXPECT_EQ(sweeps, n);
+  } else {
+    // Every k-th of all moves or of each spot's, a spot with fewer of them moves none after its first k - 1.
+    EXPECT_NEAR(sweeps, n / k, 0.15 * n / k);
+  }
+}
+
 /// Equal to the last bit after a few hundred moves, and after a few thousand, when grains have left.
 TEST_P(DrainageBruteForce, EqualsThePlainAlgorithmToTheLastBit) {
   SpotParameters spots = scenes::paper_spots();
   spots.influence = GetParam().influence;
+  spots.fixed_volume = GetParam().fixed_volume;
+  spots.together = GetParam().together;
   std::vector<Grain> grains = filling(6.0);
   grains[40].held = grains[41].held = true;
   TimeOrderedDrainage drainage = drainage_of(grains, spots, GetParam().relaxation);
   PlainDrainage plain(spots, GetParam().relaxation, -1.0, scenes::small_silo(6.0, 4.0), grains, 100.0);
   for (const int moves : {300, 700, 2000}) {
     plain.carry_out_moves(moves);
+    plain.carry_out_until(plain.time());  // what is left at the same time
     drainage.advance_to(plain.time());
     scenes::expect_identical(drainage.packing().grains(), by_id(plain.grains()));
   }
   scenes::expect_identical(drainage.take_drained(), by_id(plain.drained()));
-  EXPECT_EQ(drainage.counters().moves, 3000);
+  EXPECT_GE(plain.moves(), 3000);
+  EXPECT_EQ(drainage.counters().moves, plain.moves());
+  EXPECT_EQ(drainage.counters().sweeps, plain.sweeps());
+  expect_as_many_sweeps_as_scheduled(plain, GetParam().relaxation, spots.mean_waiting_time());
 }
 
 Scheme make_scheme(const std::string& name, double influence, RelaxationStrength strength, double shell, int every) {
@@ -179,10 +248,34 @@ Scheme make_scheme(const std::string& name, double influence, RelaxationStrength
   return {name, relaxation, influence};
 }
 
+Scheme make_scheme(const std::string& name, RelaxationSchedule schedule, int every) {
+  Scheme scheme = make_scheme(name, 0.02, RelaxationStrength::half_each, 1.0, every);
+  scheme.relaxation.schedule = schedule;
+  return scheme;
+}
+
+Scheme with(Scheme scheme, double fixed_volume, bool together) {
+  scheme.fixed_volume = fixed_volume;
+  scheme.together = together;
+  scheme.name += (fixed_volume > 0.0 ? "FixedVolume" : "") + std::string(together ? "Together" : "");
+  return scheme;
+}
+
+const Scheme strong = make_scheme("Strong", 0.02, RelaxationStrength::half_each, 1.0, 1);
+const Scheme chance = make_scheme("Chance", RelaxationSchedule::chance, 4);
+const Scheme global = make_scheme("Global", RelaxationSchedule::global, 3);
+
 INSTANTIATE_TEST_SUITE_P(Schemes, DrainageBruteForce,
                          testing::Values(make_scheme("Of2006", 2.5e-3, RelaxationStrength::full_each, 1.0, 1),
-                                         make_scheme("Of2010", 2.5e-3, RelaxationStrength::half_each, 1.0, 1),
-                                         make_scheme("Strong", 0.02, RelaxationStrength::half_each, 1.0, 1),
+                                         make_scheme("Of2010", 2.5e-3, RelaxationStrength::half_each, 1.0, 1), strong,
+                                         with(strong, 77.0, false), with(strong, 0.0, true), with(strong, 77.0, true),
+                                         chance, with(chance, 0.0, true),
+                                         make_scheme("OneInOne", RelaxationSchedule::chance, 1),
+                                         make_scheme("EachSpot", RelaxationSchedule::spot, 3),
+                                         make_scheme("EachSpotEachMove", RelaxationSchedule::spot, 1), global,
+                                         with(global, 77.0, true),
+                                         make_scheme("GlobalNever", RelaxationSchedule::global, 0),
+                                         make_scheme("ChanceNever", RelaxationSchedule::chance, 0),
                                          make_scheme("Rare", 0.02, RelaxationStrength::half_each, 1.0, 7),
                                          make_scheme("Never", 0.02, RelaxationStrength::half_each, 1.0, 0),
                                          make_scheme("NoShell", 0.02, RelaxationStrength::half_each, 0.0, 1)),

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Every build of the kernels gives the bits of the plain one.
+// Every build of the kernels gives the bits of the plain one, and the plain one what its description says.
 #include "../../spot-core/src/kernels.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <limits>
 #include <vector>
 
 #include "scenes.hpp"
-#include "spot/quantum.hpp"
 
 namespace spot::kernels {
 extern const Kernels base;
@@ -19,11 +20,12 @@ extern const Kernels v3, v4;
 namespace {
 
 using spot::Point;
+using spot::kernels::base;
 using spot::kernels::Kernels;
 
 /// The builds that this processor can run, the plain one first.
 std::vector<const Kernels*> builds() {
-  std::vector<const Kernels*> all = {&spot::kernels::base};
+  std::vector<const Kernels*> all = {&base};
 #ifdef SPOT_X86_KERNELS
   if (__builtin_cpu_supports("x86-64-v3")) all.push_back(&spot::kernels::v3);
   if (__builtin_cpu_supports("x86-64-v4")) all.push_back(&spot::kernels::v4);
@@ -31,19 +33,41 @@ std::vector<const Kernels*> builds() {
   return all;
 }
 
-constexpr Point nobody = {0x1p+500, 0x1p+500, 0x1p+500, 0.0};
+/// Quanta in a diameter, the most that there are.
+constexpr double diameter = 0x1p+25 - 1.0;
+constexpr float per_square = static_cast<float>(1.0 / (diameter * diameter));
+constexpr Point nobody = {0, 0, 0, Point::empty};
 
-/// Random points in a box, every fifth place empty, the last one too.
+std::int32_t wrapped(std::int64_t place) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(place)));
+}
+
+/// The lowest corner of the boxes below: some of their places are beyond the largest number of 32 bits, and wrap.
+constexpr std::int64_t corner = std::numeric_limits<std::int32_t>::max() - (std::int64_t{5} << 24);
+
+/// So many diameters from the corner.
+Point point_at(const spot::Vector3& place) {
+  return {wrapped(corner + std::llrint(place.x() * diameter)), wrapped(corner + std::llrint(place.y() * diameter)),
+          wrapped(corner + std::llrint(place.z() * diameter)), Point::free};
+}
+
+/// Random points in a box: every fifth place is empty, every seventh grain held, one of eleven where another is.
 std::vector<Point> points_in_box(std::size_t n, double edge, std::uint64_t seed) {
   scenes::Draws draws(seed);
-  const spot::Quantum quantum(1.0, 100.0);
   std::vector<Point> points;
   for (std::size_t i = 0; i < n; ++i) {
-    const spot::Vector3 at = draws.in_box({0, 0, 0}, {edge, edge, edge});
-    const Point point = {quantum.snap(at.x()), quantum.snap(at.y()), quantum.snap(at.z()), 0.0};
-    points.push_back(i % 5 == 4 || i + 1 == n ? nobody : point);
+    Point point = point_at(draws.in_box({0, 0, 0}, {edge, edge, edge}));
+    if (i % 11 == 10) point = points[i - 6];
+    if (i % 7 == 6) point.state = Point::held;
+    points.push_back(i % 5 == 4 ? nobody : point);
   }
   return points;
+}
+
+double squared_distance(const Point& a, const Point& b) {
+  const double x = wrapped(std::int64_t{a.x} - b.x), y = wrapped(std::int64_t{a.y} - b.y),
+               z = wrapped(std::int64_t{a.z} - b.z);
+  return x * x + y * y + z * z;
 }
 
 void expect_same(const std::vector<Point>& a, const std::vector<Point>& b, const Kernels& build) {
@@ -52,73 +76,200 @@ void expect_same(const std::vector<Point>& a, const std::vector<Point>& b, const
     ASSERT_EQ(a[i].x, b[i].x) << build.instruction_set << ", point " << i;
     ASSERT_EQ(a[i].y, b[i].y) << build.instruction_set << ", point " << i;
     ASSERT_EQ(a[i].z, b[i].z) << build.instruction_set << ", point " << i;
-    ASSERT_EQ(a[i].depth, b[i].depth) << build.instruction_set << ", point " << i;
+    ASSERT_EQ(a[i].state, b[i].state) << build.instruction_set << ", point " << i;
   }
 }
 
+float depth_of(const Point& push) {
+  float depth;
+  std::memcpy(&depth, &push.state, sizeof depth);
+  return depth;
+}
+
+constexpr double radius = 2.6 * diameter;
+
 TEST(KernelsInvariance, DisplacementIsTheSameInEveryBuild) {
-  const spot::Quantum quantum(1.0, 100.0);
-  const Point by = {quantum.round(1.7e-3), quantum.round(-2.5e-4), quantum.round(3e-5), 0.0};
+  const Point by = {57012345, -8400321, 1003, 0};
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto start = points_in_box(400, 6.0, seed);
+    const Point middle = point_at({3, 3, 3});
+    const auto squared = static_cast<float>(radius * radius);
     auto plain = start;
-    const int moved = spot::kernels::base.displace(plain.data(), plain.size(), {3, 3, 3, 0}, 2.6, by);
+    const int moved = base.displace(plain.data(), plain.size(), middle, squared, by);
     EXPECT_GT(moved, 20);
     for (const Kernels* build : builds()) {
       auto points = start;
-      EXPECT_EQ(build->displace(points.data(), points.size(), {3, 3, 3, 0}, 2.6, by), moved);
+      EXPECT_EQ(build->displace(points.data(), points.size(), middle, squared, by), moved);
       expect_same(points, plain, *build);
+      EXPECT_EQ(build->displace(points.data(), 0, middle, squared, by), 0);
     }
   }
 }
+
+/// Single precision decides who is inside only where it is as good as undecided.
+TEST(KernelsUnit, DisplacementMovesFreePointsInsideTheSphere) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const auto start = points_in_box(400, 6.0, seed);
+    auto points = start;
+    const Point middle = point_at({3, 3, 3});
+    base.displace(points.data(), points.size(), middle, static_cast<float>(radius * radius), {17, -5, 3, 0});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double part = squared_distance(start[i], middle) / (radius * radius);
+      if (std::abs(part - 1.0) < 1e-6) continue;
+      const bool moves = start[i].state == Point::free && part < 1.0;
+      EXPECT_EQ(points[i].x, wrapped(std::int64_t{start[i].x} + (moves ? 17 : 0))) << i;
+      EXPECT_EQ(points[i].y, wrapped(std::int64_t{start[i].y} - (moves ? 5 : 0))) << i;
+      EXPECT_EQ(points[i].z, wrapped(std::int64_t{start[i].z} + (moves ? 3 : 0))) << i;
+    }
+  }
+}
+
+/// Neither empty places nor held grains are ever in reach, wherever they are and however small a diameter is.
+TEST(KernelsUnit, DisplacementLeavesHeldAndEmptyPlacesAlone) {
+  const auto largest = static_cast<float>(8.0 * diameter * 8.0 * diameter);
+  for (const Kernels* build : builds()) {
+    std::vector<Point> points(8, {0, 0, 0, Point::held});
+    points[3] = points[6] = nobody;
+    const auto before = points;
+    EXPECT_EQ(build->displace(points.data(), points.size(), {0, 0, 0, Point::free}, largest, {1, 1, 1, 0}), 0);
+    expect_same(points, before, *build);
+  }
+}
+
+/// Random lists, and who has them.
+struct Listed {
+  std::vector<Point> points;
+  std::vector<std::uint32_t> neighbours, grains;
+  std::vector<std::uint8_t> sizes;
+  std::uint32_t capacity;
+
+  Listed(std::uint64_t seed, std::uint32_t list_capacity)
+      : points(points_in_box(200, 4.0, seed)), capacity(list_capacity) {
+    scenes::Draws draws(seed);
+    neighbours.resize(points.size() * capacity);
+    for (auto& unused : neighbours) unused = static_cast<std::uint32_t>(draws.below(points.size()));
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      std::uint32_t n = 0;
+      for (std::uint32_t wanted = static_cast<std::uint32_t>(draws.below(capacity + 1)); n < wanted;) {
+        const auto other = static_cast<std::uint32_t>(draws.below(points.size()));
+        if (other != i && points[other].state != Point::empty) neighbours[i * capacity + n++] = other;
+      }
+      sizes.push_back(static_cast<std::uint8_t>(n));
+      if (points[i].state == Point::free) grains.push_back(i);
+    }
+  }
+
+  spot::kernels::Lists lists() const { return {neighbours.data(), sizes.data(), capacity}; }
+
+  std::vector<Point> pushes(const Kernels& build, float share) const {
+    std::vector<Point> all(grains.size());
+    build.push_off_neighbours(points.data(), grains.data(), grains.size(), lists(), {per_square, share}, all.data());
+    return all;
+  }
+};
 
 TEST(KernelsInvariance, PushesAreTheSameInEveryBuild) {
-  constexpr std::uint32_t capacity = 16;
-  const spot::Quantum quantum(1.0, 100.0);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Listed listed(seed, seed % 2 == 0 ? 16 : 32);
+    const auto plain = listed.pushes(base, 0.4f);
+    int pushed = 0, coincident = 0;
+    for (const Point& push : plain) {
+      pushed += depth_of(push) > 0.0f;
+      coincident += depth_of(push) == 1.0f;
+    }
+    EXPECT_GT(pushed, 20);
+    EXPECT_LT(coincident, pushed);
+    for (const Kernels* build : builds()) expect_same(listed.pushes(*build, 0.4f), plain, *build);
+  }
+}
+
+TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
+  scenes::Draws draws(3);
+  const std::vector<std::uint32_t> neighbours = [] {
+    std::vector<std::uint32_t> both(32, 0);
+    both[0] = 1;
+    return both;
+  }();
+  const std::vector<std::uint8_t> sizes = {1, 1};
+  const std::vector<std::uint32_t> grains = {0, 1};
+  for (int k = 0; k < 1000; ++k) {
+    const double overlap = 0.05 * draws.uniform(0.0, 1.0);
+    spot::Vector3 along = draws.in_box({-1, -1, -1}, {1, 1, 1});
+    along.normalize();
+    const std::vector<Point> points = {point_at({1, 1, 1}), point_at(spot::Vector3(1, 1, 1) + (1.0 - overlap) * along)};
+    std::vector<Point> pushes(2);
+    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), sizes.data(), 16}, {per_square, 0.4f},
+                             pushes.data());
+    const spot::Vector3 push(pushes[0].x, pushes[0].y, pushes[0].z);
+    // To 1e-4 of itself, and what single precision leaves of 1 - r^2/d^2, and one quantum along each axis.
+    const double error = 1e-4 * 0.4 * overlap + 1e-6;
+    EXPECT_LT((push / diameter + 0.4 * overlap * along).norm(), error) << overlap;
+    EXPECT_NEAR(depth_of(pushes[0]), 1.0 - (1.0 - overlap) * (1.0 - overlap), 1e-6);
+    EXPECT_EQ(pushes[0].x, -pushes[1].x) << "action is reaction";
+    EXPECT_EQ(pushes[0].y, -pushes[1].y);
+    EXPECT_EQ(pushes[0].z, -pushes[1].z);
+  }
+}
+
+TEST(KernelsInvariance, FindWithinIsTheSameInEveryBuild) {
+  const double reach = 1.5 * diameter;
+  const auto squared = static_cast<float>(reach * reach);
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto points = points_in_box(200, 4.0, seed);
-    scenes::Draws draws(seed);
-    std::vector<std::uint32_t> lists(points.size() * capacity, static_cast<std::uint32_t>(points.size() - 1));
-    std::vector<std::uint8_t> sizes(points.size());
-    std::vector<std::uint32_t> grains;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-      grains.push_back(i);
-      sizes[i] = static_cast<std::uint8_t>(draws.below(capacity + 1));
-      for (std::uint32_t k = 0; k < sizes[i]; ++k) {
-        const auto other = static_cast<std::uint32_t>(draws.below(points.size()));
-        lists[i * capacity + k] = other == i ? static_cast<std::uint32_t>(points.size() - 1) : other;
-      }
-    }
-    const spot::kernels::Push push{1.0, 0.4, quantum.shift()};
-    std::vector<Point> plain(points.size());
-    spot::kernels::base.push_off_neighbours(points.data(), grains.data(), grains.size(),
-                                            {lists.data(), sizes.data(), capacity}, push, plain.data());
-    int pushed = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) pushed += points[i].x < 10.0 && plain[i].depth > 0.0;
-    EXPECT_GT(pushed, 20);
+    const Point centre = point_at({2, 2, 2});
+    std::vector<std::uint32_t> plain(points.size());
+    plain.resize(base.find_within(points.data(), points.size(), centre, squared, 1000, plain.data()));
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+      if (points[i].state != Point::empty && squared_distance(points[i], centre) <= reach * reach)
+        expected.push_back(1000 + i);
+    EXPECT_GT(expected.size(), 10u);
+    EXPECT_EQ(plain, expected) << "held grains are found, empty places are not";
     for (const Kernels* build : builds()) {
-      std::vector<Point> pushes(points.size());
-      build->push_off_neighbours(points.data(), grains.data(), grains.size(), {lists.data(), sizes.data(), capacity},
-                                 push, pushes.data());
-      // An empty place gets no push that matters: nobody applies it.
-      for (std::size_t i = 0; i < points.size(); ++i)
-        if (points[i].x > 10.0) pushes[i] = plain[i];
-      expect_same(pushes, plain, *build);
+      std::vector<std::uint32_t> found(points.size());
+      found.resize(build->find_within(points.data(), points.size(), centre, squared, 1000, found.data()));
+      EXPECT_EQ(found, plain) << build->instruction_set;
     }
   }
 }
 
-TEST(KernelsInvariance, WanderersAreTheSameInEveryBuild) {
+TEST(KernelsInvariance, FarthestIsTheSameInEveryBuild) {
   const auto references = points_in_box(64, 4.0, 1);
-  for (const Kernels* build : builds()) {
+  scenes::Draws draws(1);
+  for (int k = 0; k < 200; ++k) {
     auto points = references;
-    EXPECT_FALSE(build->any_beyond(points.data(), references.data(), points.size(), 0.1));
+    double farthest = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (points[i].x > 10.0) continue;
-      points[i].y += 0.11;
-      EXPECT_TRUE(build->any_beyond(points.data(), references.data(), points.size(), 0.1)) << i;
-      EXPECT_FALSE(build->any_beyond(points.data(), references.data(), points.size(), 0.12)) << i;
-      points[i] = references[i];
+      if (points[i].state != Point::free || draws.uniform(0.0, 1.0) < 0.5) continue;
+      points[i].x = wrapped(std::int64_t{points[i].x} + static_cast<std::int64_t>(draws.uniform(-1e7, 1e7)));
+      points[i].z = wrapped(std::int64_t{points[i].z} + static_cast<std::int64_t>(draws.uniform(-1e7, 1e7)));
+      farthest = std::max(farthest, squared_distance(points[i], references[i]));
+    }
+    const float plain = base.farthest(points.data(), references.data(), points.size());
+    EXPECT_NEAR(plain, farthest, 1e-6 * farthest);
+    for (const Kernels* build : builds()) {
+      EXPECT_EQ(build->farthest(points.data(), references.data(), points.size()), plain);
+      EXPECT_EQ(build->farthest(references.data(), references.data(), references.size()), 0.0f);
+    }
+  }
+}
+
+TEST(KernelsInvariance, FindReachedIsTheSameInEveryBuild) {
+  scenes::Draws draws(2);
+  for (std::size_t n = 0; n <= 70; ++n) {
+    std::vector<std::int32_t> values(n);
+    for (auto& value : values) value = static_cast<std::int32_t>(draws.below(7)) - 3;
+    if (n > 2) values[n / 2] = std::numeric_limits<std::int32_t>::max();
+    if (n > 3) values[n / 3] = std::numeric_limits<std::int32_t>::min();
+    for (const std::int32_t least : {-4, -3, 0, 1, 3, 4, 1 << 30}) {
+      std::vector<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < n; ++i)
+        if (values[i] >= least) expected.push_back(i);
+      for (const Kernels* build : builds()) {
+        std::vector<std::uint32_t> found(n);
+        found.resize(build->find_reached(values.data(), n, least, found.data()));
+        EXPECT_EQ(found, expected) << build->instruction_set << ", " << n << " values";
+      }
     }
   }
 }

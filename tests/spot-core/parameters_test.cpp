@@ -102,12 +102,44 @@ TEST(ParametersUnit, MoveRateCarriesTheSpeed) {
   EXPECT_DOUBLE_EQ(spots.move_rate(), 64.0);
 }
 
+TEST(ParametersUnit, WaitingTimeIsOneOverTheMoveRate) {
+  const SpotParameters spots = scenes::paper_spots();
+  EXPECT_DOUBLE_EQ(spots.mean_waiting_time(), 0.1 / 3.2);
+  EXPECT_DOUBLE_EQ(spots.mean_waiting_time() * spots.move_rate(), 1.0);
+}
+
+TEST(ParametersUnit, FixedVolumeOutOfRangeNamesTheWordAndTheBound) {
+  EXPECT_EQ(SpotParameters().fixed_volume, 0.0);
+  EXPECT_FALSE(SpotParameters().together);
+  for (const double bad : {-1.0, infinity, std::nan("")}) {
+    SpotParameters spots = scenes::paper_spots();
+    spots.fixed_volume = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }),
+                AllOf(HasSubstr("fixed volume is "), HasSubstr("zero (off) or positive")));
+  }
+}
+
+TEST(ParametersUnit, MomentumOutOfRangeNamesTheWordAndTheBound) {
+  RelaxationParameters relaxation;
+  for (const double good : {0.0, 0.5, 0.999}) {
+    relaxation.momentum = good;
+    EXPECT_NO_THROW(relaxation.validate());
+  }
+  for (const double bad : {-0.1, 1.0, 2.0, infinity, std::nan("")}) {
+    relaxation.momentum = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { relaxation.validate(); }),
+                AllOf(HasSubstr("relaxation momentum is "), HasSubstr("from 0 to below 1")));
+  }
+}
+
 TEST(ParametersUnit, RelaxationDefaultsAreThoseOf2010) {
   const RelaxationParameters relaxation;
   EXPECT_EQ(relaxation.alpha, 0.8);
   EXPECT_EQ(relaxation.strength, RelaxationStrength::half_each);
   EXPECT_EQ(relaxation.shell, 1.0);
   EXPECT_EQ(relaxation.every, 1);
+  EXPECT_EQ(relaxation.schedule, spot::RelaxationSchedule::moves);
+  EXPECT_EQ(relaxation.momentum, 0.0);
 }
 
 TEST(ParametersUnit, RelaxationShares) {

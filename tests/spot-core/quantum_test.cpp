@@ -32,6 +32,18 @@ TEST(QuantumUnit, IsAPowerOfTwoNear2ToTheMinus40Diameters) {
   }
 }
 
+TEST(QuantumUnit, HasAsManyBitsAsAskedFor) {
+  for (const int bits : {20, 24, 30, 40})
+    for (const double d : {1.0, 3e-3, 1.7, 1024.0}) {
+      const Quantum quantum(d, 300.0 * d, bits);
+      EXPECT_TRUE(is_power_of_two(quantum.length())) << d;
+      EXPECT_LE(quantum.length(), std::ldexp(d, -bits)) << d;
+      EXPECT_GT(quantum.length(), std::ldexp(d, -bits - 1)) << d;
+    }
+  EXPECT_EQ(Quantum(1.0, 1e9, 24).length(), Quantum(1.0, 1e9).length()) << "far away doubles are coarser";
+  EXPECT_THROW(Quantum(1.0, 300.0, 19), InvalidParameter) << "2e-6 diameters";
+}
+
 TEST(QuantumUnit, IsAtLeastTheSpacingOfDoublesAtTheExtent) {
   for (const double extent : {1e4, 1e6, 1e8}) {
     const Quantum quantum(1.0, extent);

@@ -110,6 +110,13 @@ inline std::shared_ptr<const spot::Container> small_silo(double half_width, doub
                         spot::SpotBuffers{1.0, 2.6});
 }
 
+/// The same around another place.
+inline std::shared_ptr<const spot::Container> box_silo_at(const spot::Vector3& place, double half_width,
+                                                          double half_depth) {
+  return spot::box_silo(place.x() - half_width, place.x() + half_width, place.y() - half_depth, place.y() + half_depth,
+                        spot::Orifice{place, 4.0}, spot::SpotBuffers{1.0, 2.6});
+}
+
 /// The index of the grain with this id; indices change whenever the packing is refreshed.
 inline std::uint32_t index_of(const spot::Packing& packing, std::int64_t id) {
   for (std::uint32_t i = 0; i < packing.slots(); ++i)

@@ -93,6 +93,74 @@ TEST(SpotPopulationUnit, EachMoveStartsWhereTheSpotsLastEnded) {
     }
 }
 
+TEST(SpotPopulationUnit, StepsAreCounted) {
+  const auto space = space_above_orifice();
+  walk(scenes::paper_spots(), *space, 100, 20, [&](const Move& move, int n) {
+    EXPECT_EQ(move.number, n);
+    EXPECT_EQ(move.weight, 1.0);
+  });
+}
+
+/// All at the multiples of dz / v_s, each spot at all of them from the first after its birth on (2010).
+TEST(SpotPopulationUnit, SpotsStepTogether) {
+  const auto space = space_above_orifice();
+  SpotParameters parameters = scenes::paper_spots();
+  parameters.together = true;
+  const double interval = parameters.mean_waiting_time();
+  SpotPopulation population(parameters, *space);
+  std::map<std::int64_t, std::int64_t> last;
+  std::int64_t now = 0, stepped = 0, born = 0;
+  while (const auto move = population.next_move(3.0, *space)) {
+    const auto multiple = static_cast<std::int64_t>(std::nearbyint(move->time / interval));
+    EXPECT_EQ(move->time, static_cast<double>(multiple) * interval);
+    if (multiple != now) {
+      EXPECT_EQ(stepped, born) << "every live spot";
+      now = multiple;
+      stepped = 0;
+      born = population.born();
+    }
+    ++stepped;
+    if (last.count(move->spot) > 0) {
+      EXPECT_EQ(multiple, last[move->spot] + 1);
+    }
+    last[move->spot] = multiple;
+    EXPECT_NEAR(move->step.z(), 0.1, 1e-12);
+  }
+  EXPECT_EQ(now, 96);
+  EXPECT_EQ(static_cast<std::int64_t>(last.size()), population.born());
+  EXPECT_NEAR(static_cast<double>(population.born()), 3.0 * parameters.injection_rate,
+              bound * std::sqrt(3.0 * parameters.injection_rate));
+}
+
+/// Births and directions are the same as of spots that step by themselves.
+TEST(SpotPopulationInvariance, SteppingTogetherChangesOnlyTheTimes) {
+  const auto space = space_above_orifice();
+  const auto middles = [&](bool together) {
+    SpotParameters parameters = scenes::paper_spots();
+    parameters.together = together;
+    std::map<std::pair<std::int64_t, std::int64_t>, double> all;
+    walk(parameters, *space, 50, 20, [&](const Move& move, int) {
+      all[{move.spot, move.number}] = move.middle.x() + 100.0 * move.middle.y();
+    });
+    return all;
+  };
+  EXPECT_EQ(middles(true), middles(false));
+}
+
+TEST(SpotPopulationStatistical, ChancesAreUniformAndDoNotDependOnTheDirection) {
+  const auto space = space_above_orifice();
+  std::vector<int> counts(40);
+  walk(scenes::paper_spots(), *space, 500, 80, [&](const Move& move, int) {
+    ASSERT_GE(move.chance, 0.0);
+    ASSERT_LT(move.chance, 1.0);
+    const auto part = static_cast<std::size_t>(10.0 * move.chance);
+    const bool along_x = std::abs(move.step.x()) > std::abs(move.step.y());
+    const bool forward = move.step.x() + move.step.y() > 0.0;
+    ++counts[4 * part + (along_x ? 2 : 0) + (forward ? 1 : 0)];
+  });
+  EXPECT_LT(scenes::deviation_from_equal_counts(counts), bound);
+}
+
 TEST(SpotPopulationUnit, RemovedSpotsStepNoMore) {
   const auto space = space_above_orifice();
   SpotPopulation population(scenes::paper_spots(), *space);

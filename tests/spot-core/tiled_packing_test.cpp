@@ -2,21 +2,33 @@
 // The tiled packing against loops over all grains and all pairs.
 #include "spot/tiled_packing.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <map>
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
 
+#include "plain_packing.hpp"
 #include "scenes.hpp"
 
 namespace {
 
+using scenes::PlainPacking;
 using spot::Grain;
+using spot::InvalidParameter;
 using spot::Move;
-using spot::Quantum;
+using spot::Overlap;
+using spot::PlaneWall;
+using spot::RelaxationParameters;
+using spot::RelaxationStrength;
 using spot::TiledPacking;
 using spot::Vector3;
-
-constexpr double extent = 100.0;
+using spot::WalledContainer;
+using spot::Workers;
+using testing::AllOf;
+using testing::HasSubstr;
 
 std::vector<Grain> sorted_grains(const TiledPacking& packing) {
   std::vector<Grain> all;
@@ -25,128 +37,523 @@ std::vector<Grain> sorted_grains(const TiledPacking& packing) {
   return all;
 }
 
-/// The same algorithm, obvious and slow: no cells, no lists.
-class PlainPacking {
- public:
-  PlainPacking(std::vector<Grain> grains, const spot::Container& container)
-      : quantum_(1.0, extent), container_(container), grains_(std::move(grains)) {
-    std::sort(grains_.begin(), grains_.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
-    for (Grain& grain : grains_)
-      for (int axis = 0; axis < 3; ++axis) grain.position[axis] = quantum_.snap(grain.position[axis]);
-  }
+/// The deepest overlap of all pairs, in diameters.
+double deepest_of(const std::vector<Grain>& grains, double diameter) {
+  double least = diameter * diameter;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      least = std::min(least, (grains[i].position - grains[j].position).squaredNorm());
+  return 1.0 - std::sqrt(least) / diameter;
+}
 
-  int displace(const Move& move, double radius, double influence) {
-    int moved = 0;
-    for (Grain& grain : grains_) {
-      if (grain.held || square(grain.position - move.middle) > radius * radius) continue;
-      grain.position += rounded(-influence * move.step);
-      ++moved;
-    }
-    return moved;
-  }
-
-  void sweep(const spot::RelaxationParameters& parameters) {
-    std::vector<Vector3> pushes(grains_.size(), Vector3::Zero());
-    for (std::size_t i = 0; i < grains_.size(); ++i) {
-      if (grains_[i].held) continue;
-      for (std::size_t j = 0; j < grains_.size(); ++j) {
-        const Vector3 from = grains_[i].position - grains_[j].position;
-        const double s = 1.0 - square(from);
-        if (i == j || s <= 0.0) continue;
-        const double scale = parameters.pair_share() * s * (0.5 + s * (0.375 + s * (0.3125 + s * 0.2734375)));
-        pushes[i] += rounded(scale * from);
-      }
-      spot::WallContacts contacts;
-      container_.contacts(grains_[i].position, 0.5, contacts);
-      for (const spot::WallContact& wall : contacts)
-        pushes[i] += rounded(parameters.fixed_share() * (0.5 - wall.distance) * wall.normal);
-    }
-    for (std::size_t i = 0; i < grains_.size(); ++i) grains_[i].position += pushes[i];
-  }
-
-  const std::vector<Grain>& grains() const { return grains_; }
-
- private:
-  static double square(const Vector3& v) { return v.x() * v.x() + v.y() * v.y() + v.z() * v.z(); }
-  Vector3 rounded(const Vector3& v) const {
-    return {quantum_.round(v.x()), quantum_.round(v.y()), quantum_.round(v.z())};
-  }
-
-  Quantum quantum_;
-  const spot::Container& container_;
-  std::vector<Grain> grains_;
+/// What is done to a packing. Lengths in diameters; the numbers of the default are for a box of 11 x 7 x 8 centres.
+struct Treatment {
+  std::string name;
+  std::function<std::shared_ptr<const spot::Container>()> container = [] { return scenes::small_silo(6.0, 4.0); };
+  std::vector<Grain> grains = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 8.0}, 0.01, 7);
+  RelaxationParameters relaxation = {};
+  Vector3 low{-4, -3, 0}, high{4, 3, 7};  // where moves are
+  double largest_step = 0.05;             // of a grain along an axis
+  bool one_way = false;                   // along x
+  int calls = 100, moves_in_call = 12;
+  int threads = 1;
+  double diameter = 1.0, extent = 100.0, outlet = -1.0;
 };
 
+void PrintTo(const Treatment& treatment, std::ostream* out) { *out << treatment.name; }
+
+RelaxationParameters relaxation_with(double alpha, double momentum,
+                                     RelaxationStrength strength = RelaxationStrength::half_each) {
+  RelaxationParameters relaxation;
+  relaxation.alpha = alpha;
+  relaxation.momentum = momentum;
+  relaxation.strength = strength;
+  return relaxation;
+}
+
+Treatment plain_box() { return {"Box"}; }
+
+Treatment of_2006() {
+  Treatment t{"Of2006"};
+  t.relaxation = relaxation_with(0.8, 0.0, RelaxationStrength::full_each);
+  return t;
+}
+
+Treatment with_momentum() {
+  Treatment t{"Momentum"};
+  t.relaxation = relaxation_with(1.2, 0.7);
+  t.threads = 2;
+  return t;
+}
+
+Treatment with_held_grains() {
+  Treatment t{"Held"};
+  t.relaxation = relaxation_with(1.2, 0.7);
+  for (std::size_t i = 0; i < t.grains.size(); i += 5) t.grains[i].held = true;
+  return t;
+}
+
+/// Pairs and a triple at the same places; some of them held.
+Treatment coincident() {
+  Treatment t{"Coincident"};
+  t.relaxation = relaxation_with(0.8, 0.5);
+  for (const std::size_t i : {20, 100, 100, 300, 400, 401}) {
+    Grain twin = t.grains[i];
+    twin.id = 1000 + static_cast<std::int64_t>(t.grains.size());
+    twin.held = i >= 400;
+    t.grains.push_back(twin);
+  }
+  t.threads = 3;
+  return t;
+}
+
+/// Grains jump by more than their diameter.
+Treatment large_steps() {
+  Treatment t{"LargeSteps"};
+  t.largest_step = 1.5;
+  t.moves_in_call = 4;
+  t.calls = 60;
+  return t;
+}
+
+/// Many steps in one call, along which grains go much farther than lists allow.
+Treatment many_moves() {
+  Treatment t{"ManyMoves"};
+  t.largest_step = 0.05;
+  t.one_way = true;
+  t.moves_in_call = 300;
+  t.calls = 8;
+  t.threads = 2;
+  return t;
+}
+
+/// Higher than 2^32 quanta.
+Treatment tall() {
+  Treatment t{"Tall"};
+  t.grains = scenes::dense_grains({-1.3, -1.3, 0.0}, {1.3, 1.3, 330.0}, 0.01, 7);
+  t.container = [] {
+    auto column = scenes::empty_space();
+    column->add(std::make_unique<PlaneWall>(Vector3(-1.8, 0, 0), Vector3(1, 0, 0)), 0.0);
+    column->add(std::make_unique<PlaneWall>(Vector3(1.8, 0, 0), Vector3(-1, 0, 0)), 0.0);
+    column->add(std::make_unique<PlaneWall>(Vector3(0, -1.8, 0), Vector3(0, 2, 0)), 0.0);
+    column->add(std::make_unique<PlaneWall>(Vector3(0, 1.8, 0), Vector3(0, -2, 0)), 0.0);
+    return std::shared_ptr<const spot::Container>(std::move(column));
+  };
+  t.extent = 400.0;
+  t.outlet = -5.0;
+  t.low = {-1, -1, 0};
+  t.high = {1, 1, 330};
+  t.largest_step = 0.3;
+  t.calls = 12;
+  t.moves_in_call = 200;
+  t.relaxation = relaxation_with(1.2, 0.7);
+  return t;
+}
+
+Treatment far_from_the_origin() {
+  Treatment t{"FarAway"};
+  const Vector3 there(1e5, -9.9e4, 8e4);
+  for (Grain& grain : t.grains) grain.position += there;
+  t.low += there;
+  t.high += there;
+  t.container = [there] { return scenes::box_silo_at(there, 6.0, 4.0); };
+  t.extent = 2e5;
+  t.outlet += there.z();
+  t.relaxation = relaxation_with(1.2, 0.7);
+  return t;
+}
+
+/// A diameter that is no power of two.
+Treatment in_metres() {
+  Treatment t{"Metres"};
+  const double d = 3e-3;
+  for (Grain& grain : t.grains) grain.position *= d;
+  t.container = [d] {
+    return spot::box_silo(-6.0 * d, 6.0 * d, -4.0 * d, 4.0 * d, spot::Orifice{{0, 0, 0}, 4.0 * d},
+                          spot::SpotBuffers{d, d});
+  };
+  t.diameter = d;
+  t.extent = 1.0;
+  t.outlet = -d;
+  return t;
+}
+
+Treatment in_a_cylinder() {
+  Treatment t{"Cylinder"};
+  t.container = [] { return spot::cylinder_silo(0.5, 0.0, 4.5, spot::Orifice{{0, 0, 0}, 4.0}, {1.0, 1.0}); };
+  t.grains.erase(
+      std::remove_if(t.grains.begin(), t.grains.end(),
+                     [](const Grain& grain) { return (grain.position - Vector3(0.5, 0, 0)).head<2>().norm() > 4.0; }),
+      t.grains.end());
+  t.threads = 2;
+  return t;
+}
+
+/// Walls across axes and others in one container.
+Treatment in_a_funnel() {
+  Treatment t{"Funnel"};
+  t.container = [] {
+    auto funnel = std::make_unique<WalledContainer>(spot::Orifice{{0, 0, -9}, 4.0});
+    funnel->add(std::make_unique<PlaneWall>(Vector3(-5.6, 0, 0), Vector3(1, 0, 0.2)), 0.0);
+    funnel->add(std::make_unique<PlaneWall>(Vector3(6, 0, 0), Vector3(-1, 0, 0)), 0.0);
+    funnel->add(std::make_unique<PlaneWall>(Vector3(0, -4, 0), Vector3(0, 1, 0)), 0.0);
+    funnel->add(std::make_unique<PlaneWall>(Vector3(0, 4, 0), Vector3(0, -1, 0)), 0.0);
+    funnel->add(std::make_unique<PlaneWall>(Vector3(0, 0, 9), Vector3(0, 0, -1)), 0.0);
+    funnel->add(std::make_unique<PlaneWall>(Vector3(0, 0, 0), Vector3(0, 0, 1)), 0.0);
+    return std::shared_ptr<const spot::Container>(std::move(funnel));
+  };
+  return t;
+}
+
+TEST(TiledPackingUnit, MoreAxisPlanesThanBitsAreStillWalls) {
+  WalledContainer steps(spot::Orifice{{0, 0, -99}, 4.0});
+  for (int k = 0; k < 9; ++k) steps.add(std::make_unique<PlaneWall>(Vector3(-5.0 * k, 0, 0), Vector3(1, 0, 0)), 0.0);
+  ASSERT_EQ(steps.axis_planes().size(), 9u);
+  TiledPacking packing(1.0, 100.0, 0.0, {{1, {0.25, 0, 0}}}, steps);
+  Workers workers(1);
+  packing.sweep({}, 0, 1.0, steps, workers);
+  EXPECT_NEAR(sorted_grains(packing)[0].position.x(), 0.25 + 0.8 * 0.25, 1e-6);
+}
+
+class TiledPackingBruteForce : public testing::TestWithParam<Treatment> {};
+
 /// Moves and sweeps over everything, many more than a list survives.
-TEST(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
-  const auto silo = scenes::small_silo(6.0, 4.0);
-  const auto grains = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 8.0}, 0.01, 7);
-  TiledPacking tiled(1.0, extent, -1.0, grains, *silo);
-  PlainPacking plain(grains, *silo);
-  const spot::RelaxationParameters relaxation;
+TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
+  const Treatment& t = GetParam();
+  const auto container = t.container();
+  TiledPacking tiled(t.diameter, t.extent, t.outlet, t.grains, *container);
+  PlainPacking plain(t.diameter, t.extent, t.outlet, t.grains, *container);
+  Workers workers(t.threads);
+  constexpr double influence = 5e-3;
+  const double step = t.largest_step / influence;
   scenes::Draws draws(3);
-  for (int step = 0; step < 300; ++step) {
-    const Move move{0.0, 0, draws.in_box({-4, -3, 0}, {4, 3, 7}), draws.in_box({-7, -7, 0}, {7, 7, 4})};
-    ASSERT_EQ(tiled.displace(move, 2.6, 5e-3), plain.displace(move, 2.6, 5e-3));
-    tiled.update_lists(*silo);
-    if (step % 3 == 0) {
-      EXPECT_EQ(tiled.sweep(relaxation, 0, 4, 1.0, *silo), grains.size());
-      tiled.update_lists(*silo);
-      plain.sweep(relaxation);
+  std::vector<int> moved;
+  int total = 0;
+  for (int call = 0; call < t.calls; ++call) {
+    std::vector<Move> moves(draws.below(static_cast<std::size_t>(t.moves_in_call) + 1));
+    for (Move& move : moves) {
+      move.middle = t.diameter * draws.in_box(t.low, t.high);
+      move.step = t.diameter * draws.in_box({-step, -step, -0.5 * step}, {step, step, 0.5 * step});
+      if (t.one_way) move.step.x() = (call % 2 == 0 ? 1.0 : -1.0) * std::abs(move.step.x());
+      move.weight = draws.uniform(0.0, 1.0);
+    }
+    tiled.displace(moves, 2.6 * t.diameter, influence, *container, workers, moved);
+    ASSERT_EQ(moved.size(), moves.size());
+    for (std::size_t m = 0; m < moves.size(); ++m) {
+      ASSERT_EQ(moved[m], plain.displace(moves[m], 2.6 * t.diameter, influence)) << "call " << call;
+      total += moved[m];
+    }
+    for (int sweep = call % 3; sweep > 0; --sweep) {
+      std::size_t free = 0;
+      for (const Grain& grain : t.grains) free += grain.held ? 0 : 1;
+      ASSERT_EQ(tiled.sweep(t.relaxation, 0, 1.0, *container, workers), free);
+      plain.sweep(t.relaxation);
+    }
+    if (call % 4 == 3 || call + 1 == t.calls) {
+      scenes::expect_identical(sorted_grains(tiled), plain.grains());
+      if (HasFailure()) FAIL() << "call " << call;
     }
   }
-  scenes::expect_identical(sorted_grains(tiled), plain.grains());
+  EXPECT_GT(total, 1000);
+  // Lists are complete: they hold the deepest of all pairs.
+  const double deepest = deepest_of(plain.grains(), t.diameter);
+  EXPECT_GT(deepest, 0.0);
+  EXPECT_NEAR(tiled.largest_overlap().depth, deepest, 1e-9);
 }
+
+INSTANTIATE_TEST_SUITE_P(Treatments, TiledPackingBruteForce,
+                         testing::Values(plain_box(), of_2006(), with_momentum(), with_held_grains(), coincident(),
+                                         large_steps(), many_moves(), tall(), far_from_the_origin(), in_metres(),
+                                         in_a_cylinder(), in_a_funnel()),
+                         [](const auto& treatment) { return treatment.param.name; });
 
 TEST(TiledPackingBruteForce, LargestOverlapIsThatOfAllPairs) {
   const auto space = scenes::empty_space();
   const auto grains = scenes::random_grains(300, {0, 0, 0}, {7, 7, 7}, 0.8, 5);
-  const TiledPacking packing(1.0, extent, 0.0, grains, *space);
-  double largest = 0.0;
-  const auto all = sorted_grains(packing);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) largest = std::max(largest, 1.0 - (all[i].position - all[j].position).norm());
-  EXPECT_NEAR(packing.largest_overlap().depth, largest, 1e-15);
+  const TiledPacking packing(1.0, 100.0, 0.0, grains, *space);
+  EXPECT_NEAR(packing.largest_overlap().depth, deepest_of(sorted_grains(packing), 1.0), 1e-15);
+}
+
+/// In a sweep over some cells, a grain goes where it would go in a sweep over all, or stays.
+TEST(TiledPackingBruteForce, ASweepOfSomeCellsIsPartOfASweepOfAll) {
+  const auto silo = scenes::small_silo(6.0, 4.0);
+  TiledPacking tiled(1.0, 100.0, -1.0, scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7), *silo);
+  Workers workers(2);
+  scenes::Draws draws(4);
+  std::vector<int> moved;
+  const RelaxationParameters relaxation = relaxation_with(1.2, 0.0);
+  std::size_t pushed_in_all = 0;
+  for (int round = 0; round < 30; ++round) {
+    std::vector<Move> moves(1 + draws.below(3));
+    for (Move& move : moves) {
+      move.middle = draws.in_box({-4, -3, 0}, {4, 3, 19});
+      move.step = draws.in_box({-7, -7, -7}, {7, 7, 7});
+    }
+    tiled.displace(moves, 2.6, 5e-3, *silo, workers, moved);
+    const auto before = sorted_grains(tiled);
+    PlainPacking plain(1.0, 100.0, -1.0, before, *silo);
+    plain.sweep(relaxation);
+    const auto all = plain.grains();
+    const std::size_t swept = tiled.sweep(relaxation, 1, 1.0, *silo, workers);
+    const auto after = sorted_grains(tiled);
+    std::size_t pushed = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      const bool goes = after[i].position == all[i].position;
+      ASSERT_TRUE(goes || after[i].position == before[i].position) << "grain " << after[i].id;
+      pushed += goes && after[i].position != before[i].position ? 1 : 0;
+      for (const Move& move : moves)
+        if ((before[i].position - move.middle).norm() < 2.6) {
+          ASSERT_TRUE(goes) << "grain " << after[i].id << " is where a spot was";
+        }
+    }
+    pushed_in_all += pushed;
+    EXPECT_LE(pushed, swept);
+    EXPECT_LT(swept, tiled.size());
+    while (tiled.sweep(relaxation, 1, 1.0, *silo, workers) > 0) {
+    }
+  }
+  EXPECT_GT(pushed_in_all, 100u);
+}
+
+TEST(TiledPackingInvariance, ThreadsChangeNothing) {
+  const auto silo = scenes::small_silo(6.0, 4.0);
+  const auto start = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7);
+  std::vector<std::vector<Grain>> left, out;
+  std::vector<std::vector<std::size_t>> counts;
+  for (const int threads : {1, 2, 3, 4}) {
+    TiledPacking packing(1.0, 100.0, -1.0, start, *silo);
+    Workers workers(threads);
+    scenes::Draws draws(6);
+    counts.emplace_back();
+    out.emplace_back();
+    std::vector<int> moved;
+    for (int round = 0; round < 60; ++round) {
+      std::vector<Move> moves(draws.below(30));
+      for (Move& move : moves) {
+        move.middle = draws.in_box({-4, -3, 0}, {4, 3, 19});
+        move.step = draws.in_box({-7, -7, 0}, {7, 7, 7});
+      }
+      packing.displace(moves, 2.6, 5e-3, *silo, workers, moved);
+      for (const int n : moved) counts.back().push_back(static_cast<std::size_t>(n));
+      counts.back().push_back(packing.sweep(relaxation_with(1.2, 0.7), 2, 0.02, *silo, workers));
+      packing.take_out_below(0.48, out.back());
+    }
+    left.push_back(sorted_grains(packing));
+    std::sort(out.back().begin(), out.back().end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
+  }
+  EXPECT_LT(left[0].size(), start.size());
+  for (std::size_t k = 1; k < left.size(); ++k) {
+    EXPECT_EQ(counts[k], counts[0]) << k + 1 << " threads";
+    scenes::expect_identical(left[k], left[0]);
+    scenes::expect_identical(out[k], out[0]);
+  }
 }
 
 TEST(TiledPackingUnit, ACellThatOverflowsIsMadeLarger) {
   const auto space = scenes::empty_space();
   const auto grains = scenes::random_grains(60, {0, 0, 0}, {1.4, 1.4, 1.4}, 0.2, 9);
-  const TiledPacking packing(1.0, extent, 0.0, grains, *space);
+  const TiledPacking packing(1.0, 100.0, 0.0, grains, *space);
   EXPECT_EQ(sorted_grains(packing).size(), grains.size());
+}
+
+std::vector<Move> one_move(const Vector3& middle, const Vector3& step) { return {{0.0, 0, middle, step}}; }
+
+/// Moves that bring more and more grains into one cell, which is made larger while they have momentum.
+TEST(TiledPackingBruteForce, ACellThatOverflowsInFlowIsMadeLarger) {
+  const auto space = scenes::empty_space();
+  auto grains = scenes::dense_grains({0, 0, 0}, {6, 6, 6}, 0.01, 3);
+  TiledPacking tiled(1.0, 100.0, 0.0, grains, *space);
+  PlainPacking plain(1.0, 100.0, 0.0, grains, *space);
+  Workers workers(2);
+  const RelaxationParameters relaxation = relaxation_with(0.2, 0.7);
+  std::vector<int> moved;
+  const std::size_t memory = tiled.memory();
+  for (int k = 0; k < 60; ++k) {
+    // Everything around a point of a sphere goes a little to its centre.
+    const double turn = 2.4 * k;
+    const Vector3 out(std::cos(turn) * std::cos(k), std::sin(turn) * std::cos(k), std::sin(k));
+    const auto moves = one_move(Vector3(3, 3, 3) + 2.0 * out, 60.0 * out);
+    tiled.displace(moves, 2.0, 5e-3, *space, workers, moved);
+    ASSERT_EQ(moved[0], plain.displace(moves[0], 2.0, 5e-3));
+    tiled.sweep(relaxation, 0, 1.0, *space, workers);
+    plain.sweep(relaxation);
+  }
+  scenes::expect_identical(sorted_grains(tiled), plain.grains());
+  EXPECT_GT(tiled.memory(), memory) << "no cell overflowed, so this tested nothing";
 }
 
 TEST(TiledPackingUnit, SweepsOnlyCellsThatAreDue) {
   const auto silo = scenes::small_silo(6.0, 4.0);
-  TiledPacking packing(1.0, extent, -1.0, scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7), *silo);
-  const spot::RelaxationParameters relaxation;
-  EXPECT_EQ(packing.sweep(relaxation, 1, 4, 1.0, *silo), 0u) << "nobody has moved";
-  packing.displace({0.0, 0, {0, 0, 5}, {0.7, 0, 0.1}}, 2.6, 2.5e-3);
-  EXPECT_EQ(packing.sweep(relaxation, 2, 4, 1.0, *silo), 0u);
-  const std::size_t swept = packing.sweep(relaxation, 1, 4, 1.0, *silo);
+  TiledPacking packing(1.0, 100.0, -1.0, scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7), *silo);
+  Workers workers(1);
+  std::vector<int> moved;
+  const RelaxationParameters relaxation;
+  EXPECT_EQ(packing.sweep(relaxation, 1, 1.0, *silo, workers), 0u) << "nobody has moved";
+  packing.displace(one_move({0, 0, 5}, {0.7, 0, 0.1}), 2.6, 2.5e-3, *silo, workers, moved);
+  EXPECT_GT(moved[0], 70);
+  EXPECT_EQ(packing.sweep(relaxation, 2, 1.0, *silo, workers), 0u);
+  const std::size_t swept = packing.sweep(relaxation, 1, 1.0, *silo, workers);
   EXPECT_GT(swept, 80u);
   EXPECT_LT(swept, packing.size() / 2);
-  EXPECT_EQ(packing.sweep(relaxation, 1, 4, 1.0, *silo), 0u) << "the accounts are settled";
+  EXPECT_EQ(packing.sweep(relaxation, 1, 1.0, *silo, workers), 0u) << "the accounts are settled";
+}
+
+TEST(TiledPackingUnit, ASweepPaysForAsManyMovesAsMakeItDue) {
+  const auto silo = scenes::small_silo(6.0, 4.0);
+  TiledPacking packing(1.0, 100.0, -1.0, scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7), *silo);
+  Workers workers(1);
+  std::vector<int> moved;
+  for (const int due : {1, 2, 3, 7}) {
+    // Of 14 moves one after the other, some paid for together.
+    for (int k = 0; k < 14; ++k) packing.displace(one_move({0, 0, 5}, {0.7, 0, 0.1}), 2.6, 1e-5, *silo, workers, moved);
+    std::size_t swept = 0;
+    for (int sweep = 0; sweep < 14 / due; ++sweep) {
+      const std::size_t now = packing.sweep({}, due, 1.0, *silo, workers);
+      EXPECT_GT(now, 0u) << due << " moves make a cell due, sweep " << sweep;
+      if (sweep > 0) {
+        EXPECT_EQ(now, swept);
+      }
+      swept = now;
+    }
+    EXPECT_EQ(packing.sweep({}, due, 1.0, *silo, workers), 0u);
+    if (14 % due > 0) {
+      EXPECT_GT(packing.sweep({}, 14 % due, 1.0, *silo, workers), 0u) << "what is left over";
+    }
+    EXPECT_EQ(packing.sweep({}, 1, 1.0, *silo, workers), 0u) << due;
+  }
 }
 
 TEST(TiledPackingUnit, DeepOverlapsKeepACellDue) {
   const auto space = scenes::empty_space();
-  TiledPacking packing(1.0, extent, 0.0, {{1, {1, 1, 1}}, {2, {1.9, 1, 1}}}, *space);
-  packing.displace({0.0, 0, {1, 1, 1}, {0, 0, 0}}, 2.6, 2.5e-3);
-  const spot::RelaxationParameters relaxation;
-  EXPECT_EQ(packing.sweep(relaxation, 1, 4, 0.02, *space), 2u);
-  EXPECT_EQ(packing.sweep(relaxation, 1, 4, 0.02, *space), 2u) << "0.02 d were left";
-  EXPECT_EQ(packing.sweep(relaxation, 1, 4, 0.02, *space), 0u);
+  TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {2, {1.9, 1, 1}}}, *space);
+  Workers workers(1);
+  std::vector<int> moved;
+  packing.displace(one_move({1, 1, 1}, {0, 0, 0}), 2.6, 2.5e-3, *space, workers, moved);
+  const RelaxationParameters relaxation;
+  EXPECT_EQ(packing.sweep(relaxation, 1, 0.02, *space, workers), 2u);
+  EXPECT_EQ(packing.sweep(relaxation, 1, 0.02, *space, workers), 2u) << "0.02 d were left";
+  EXPECT_EQ(packing.sweep(relaxation, 1, 0.02, *space, workers), 0u);
 }
 
 TEST(TiledPackingUnit, HeldGrainsStay) {
   const auto space = scenes::empty_space();
-  TiledPacking packing(1.0, extent, 0.0, {{1, {1, 1, 1}, true}, {2, {1.9, 1, 1}}}, *space);
-  EXPECT_EQ(packing.displace({0.0, 0, {1, 1, 1}, {1, 0, 0}}, 2.6, 2.5e-3), 1);
-  packing.sweep({}, 1, 4, 0.02, *space);
+  TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}, true}, {2, {1.9, 1, 1}}}, *space);
+  Workers workers(1);
+  std::vector<int> moved;
+  packing.displace(one_move({1, 1, 1}, {1, 0, 0}), 2.6, 2.5e-3, *space, workers, moved);
+  EXPECT_EQ(moved, std::vector<int>{1});
+  EXPECT_EQ(packing.sweep({}, 1, 0.02, *space, workers), 1u);
   const auto grains = sorted_grains(packing);
   EXPECT_EQ(grains[0].position, Vector3(1, 1, 1));
   EXPECT_GT(grains[1].position.x(), 1.9);
+}
+
+TEST(TiledPackingAnalytic, MomentumCarriesTheLastCorrectionOn) {
+  const auto space = scenes::empty_space();
+  TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {2, {1.9, 1, 1}}}, *space);
+  Workers workers(1);
+  // The first sweep opens the pair by alpha = 1, the whole of the overlap of 0.1 d; then only momentum is left.
+  double expected = 1.0 - 0.05;
+  double step = 0.05;
+  for (int sweep = 0; sweep < 10; ++sweep) {
+    packing.sweep(relaxation_with(1.001, 0.5), 0, 1.0, *space, workers);
+    if (sweep > 0) expected -= step;
+    step *= 0.5;
+    EXPECT_NEAR(sorted_grains(packing)[0].position.x(), expected, 1e-3) << "sweep " << sweep;
+  }
+}
+
+TEST(TiledPackingUnit, CoincidentGrainsPartAlongX) {
+  const auto space = scenes::empty_space();
+  TiledPacking packing(1.0, 100.0, 0.0, {{7, {1, 1, 1}}, {3, {1, 1, 1}}}, *space);
+  Workers workers(1);
+  packing.sweep({}, 0, 1.0, *space, workers);
+  const auto grains = sorted_grains(packing);
+  EXPECT_NEAR(grains[0].position.x(), 0.6, 1e-6);
+  EXPECT_NEAR(grains[1].position.x(), 1.4, 1e-6);
+  for (const Grain& grain : grains) EXPECT_EQ(grain.position.tail<2>(), Eigen::Vector2d(1, 1));
+}
+
+/// Walls across axes, which have a short cut, push as all other walls do.
+TEST(TiledPackingAnalytic, GrainsArePushedOffPlanesByAlphaDelta) {
+  const auto silo = scenes::small_silo(6.0, 4.0);
+  for (const double overlap : {0.3, 0.01, 1e-4}) {
+    const double x = 5.5 + overlap, y = -3.5 - 0.5 * overlap;
+    TiledPacking packing(1.0, 100.0, -1.0, {{1, {x, y, 5}}, {2, {-x, -y, 5}}, {3, {0, 0, 5}}}, *silo);
+    Workers workers(1);
+    packing.sweep(relaxation_with(0.8, 0.0), 0, 1.0, *silo, workers);
+    const auto grains = sorted_grains(packing);
+    for (const int sign : {1, -1}) {
+      const Vector3& at = grains[sign > 0 ? 0 : 1].position;
+      EXPECT_NEAR(sign * at.x(), 5.5 + 0.2 * overlap, 3e-7);
+      EXPECT_NEAR(sign * at.y(), -3.5 - 0.1 * overlap, 3e-7);
+      EXPECT_EQ(at.z(), 5.0);
+    }
+    EXPECT_EQ(grains[2].position, Vector3(0, 0, 5));
+  }
+}
+
+/// Coordinates wrap around; walls that are farther from a grain than they reach must not seem near.
+TEST(TiledPackingUnit, WideSilosHaveTheWallsWhereTheyAre) {
+  for (const double width : {60.0, 100.0, 127.0, 129.0, 150.0, 250.0, 257.0, 300.0, 400.0, 600.0}) {
+    for (const double d : {1.0, 1.99}) {
+      const double half = 0.5 * width * d;
+      const auto silo =
+          spot::box_silo(-half, half, -4.0 * d, 4.0 * d, spot::Orifice{{0, 0, 0}, 4.0 * d}, spot::SpotBuffers{d, d});
+      std::vector<Grain> start;
+      for (double x = -half + 0.6 * d; x <= half - 0.6 * d; x += 0.05 * (half - 0.6 * d))
+        start.push_back({static_cast<std::int64_t>(start.size()) + 1, {x, 0.0, 3.0 * d}});
+      TiledPacking packing(d, 1000.0 * d, 0.0, start, *silo);
+      Workers workers(1);
+      const auto before = sorted_grains(packing);
+      packing.sweep({}, 0, 1.0, *silo, workers);
+      scenes::expect_identical(sorted_grains(packing), before);
+      ASSERT_FALSE(HasFailure()) << width << " diameters of " << d;
+    }
+  }
+}
+
+TEST(TiledPackingUnit, TakesOutWhatIsBelowTheOutlet) {
+  const auto space = scenes::empty_space();
+  TiledPacking packing(1.0, 100.0, 0.0,
+                       {{1, {1, 1, 0.001}}, {2, {2, 2, 0.001}, true}, {3, {1, 1, 0.9}}, {4, {1, 1, 1.9}}}, *space);
+  Workers workers(1);
+  std::vector<int> moved;
+  std::vector<Grain> out;
+  packing.take_out_below(0.0, out);
+  EXPECT_TRUE(out.empty());
+  packing.displace(one_move({1, 1, 0}, {0, 0, 0.1}), 2.6, 0.05, *space, workers, moved);
+  packing.take_out_below(0.0, out);
+  ASSERT_EQ(out.size(), 1u) << "held grains stay";
+  EXPECT_EQ(out[0].id, 1);
+  EXPECT_NEAR(out[0].position.z(), -0.004, 1e-6);
+  EXPECT_EQ(packing.size(), 3u);
+  EXPECT_NEAR(packing.largest_overlap().depth, 0.0, 1e-6) << "who is out overlaps with nobody";
+}
+
+TEST(TiledPackingUnit, SpotsThatAreTooWideAreNamed) {
+  const auto space = scenes::empty_space();
+  Workers workers(1);
+  std::vector<int> moved;
+  TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}}, *space);
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([&] {
+                packing.displace(one_move({1, 1, 1}, {1, 0, 0}), 8.0, 2.5e-3, *space, workers, moved);
+              }),
+              AllOf(HasSubstr("spot radius is 8 "), HasSubstr("below 8")));
+  packing.displace(one_move({8.9, 1, 1}, {1, 0, 0}), 7.99, 2.5e-3, *space, workers, moved);
+  EXPECT_EQ(moved[0], 1);
+}
+
+TEST(TiledPackingUnit, NoMovesNoGrainsNoError) {
+  const auto space = scenes::empty_space();
+  Workers workers(2);
+  std::vector<int> moved = {5};
+  TiledPacking packing(1.0, 100.0, 0.0, {}, *space);
+  packing.displace({}, 2.6, 2.5e-3, *space, workers, moved);
+  EXPECT_TRUE(moved.empty());
+  packing.displace(one_move({8.9, 1, 1}, {1, 0, 0}), 2.6, 2.5e-3, *space, workers, moved);
+  EXPECT_EQ(moved, std::vector<int>{0});
+  EXPECT_EQ(packing.sweep({}, 1, 0.02, *space, workers), 0u);
 }
 
 }  // namespace

@@ -14,7 +14,9 @@ struct Spot {
   std::int64_t id;
   std::int64_t steps;  ///< taken so far
   Vector3 position;
-  double next_step;  ///< time of the step to come
+  double next_step;     ///< time of the step to come
+  double turn = 0.0;    ///< a uniform random number, for its direction
+  double chance = 0.0;  ///< another, for whoever draws lots
 };
 
 /// How spots are born and walk. Walks do not look at grains, and there is no state: all follows from
@@ -37,6 +39,8 @@ class SpotWalk {
   Move step(Spot& spot, const Container& container) const;
 
  private:
+  void draw_next_step(Spot& spot) const;
+
   SpotParameters parameters_;
 };
 

@@ -41,6 +41,9 @@ class TiledPacking {
   TiledPacking(double diameter, double extent, double outlet, const std::vector<Grain>& grains,
                const Container& container);
 
+  /// Throws InvalidParameter unless spots of this radius are small enough, below 8 diameters.
+  static void require_radius(double radius, double diameter);
+
   double diameter() const { return diameter_; }
   std::size_t size() const { return size_; }
   double extent() const { return extent_; }

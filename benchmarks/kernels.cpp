@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Time of the kernels of spot-core for each instruction set that this processor has, and of the moves and sweeps that are made of
+// them, on the packing at rest of examples/silo. Lengths in grain diameters. See README.md.
+#include "../spot-core/src/kernels.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "spot/spot_walk.hpp"
+#include "spot/tiled_packing.hpp"
+
+namespace spot::kernels {
+extern const Kernels base;
+#ifdef SPOT_X86_KERNELS
+extern const Kernels v3, v4;
+#endif
+}  // namespace spot::kernels
+
+namespace {
+
+using spot::Point;
+using spot::Vector3;
+using spot::kernels::Kernels;
+
+constexpr double diameter_in_metres = 0.003;
+constexpr double quanta = 16777216.0;  // in a diameter, as TiledPacking has them
+constexpr double radius = 2.6, influence = 2.5e-3, step_height = 0.8, diffusion_length = 1.25;
+
+std::vector<spot::Grain> read_grains() {
+  const std::string command = "gzip -dc " SPOT_BENCHMARK_PACKING;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  std::vector<spot::Grain> grains;
+  std::array<char, 256> line;
+  while (pipe && std::fgets(line.data(), line.size(), pipe.get())) {
+    long long id;
+    double x, y, z;
+    if (std::sscanf(line.data(), "%lld %*d %*f %*f %lf %lf %lf", &id, &x, &y, &z) == 4)
+      grains.push_back({id, Vector3(x, y, z) / diameter_in_metres});
+  }
+  if (grains.empty()) throw std::runtime_error("no grains in " SPOT_BENCHMARK_PACKING);
+  return grains;
+}
+
+const std::vector<spot::Grain>& grains() {
+  static const std::vector<spot::Grain> all = read_grains();
+  return all;
+}
+
+// ---- kernels, on an array laid out as TiledPacking does it
+
+/// Cells of 1.5 d with eight slots each, x fastest, and lists of the neighbours within 1.5 d.
+struct Tiles {
+  static constexpr std::uint32_t slots = 8, list_capacity = 16;
+  static constexpr double edge = 1.5, reach = 1.5;
+
+  std::array<int, 3> cells = {};
+  Vector3 low;
+  std::vector<Point> points;
+  std::vector<std::uint32_t> grains;  // slots of them
+  std::vector<std::uint32_t> lists;
+  std::vector<std::uint8_t> list_size;
+
+  Tiles() {
+    low = Vector3(-25, -4, -1);
+    cells = {34, 6, 90};
+    points.assign(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]) * slots, Point{0, 0, 0, Point::empty});
+    lists.assign(points.size() * list_capacity, 0);
+    list_size.assign(points.size(), 0);
+    for (const spot::Grain& grain : ::grains()) {
+      const std::uint32_t first = cell(grain.position) * slots;
+      for (std::uint32_t slot = first; slot < first + slots; ++slot)
+        if (points[slot].state == Point::empty) {
+          points[slot] = point(grain.position);
+          break;
+        }
+    }
+    for (std::uint32_t slot = 0; slot < points.size(); ++slot)
+      if (points[slot].state == Point::free) grains.push_back(slot);
+    list_neighbours();
+  }
+
+  Point point(const Vector3& position) const {
+    const Vector3 at = (position - low) * quanta;
+    const auto wrap = [](double number) { return static_cast<std::int32_t>(static_cast<std::uint64_t>(std::llround(number))); };
+    return {wrap(at.x()), wrap(at.y()), wrap(at.z()), Point::free};
+  }
+
+  std::array<int, 3> coordinates(const Vector3& position) const {
+    std::array<int, 3> all;
+    for (int axis = 0; axis < 3; ++axis)
+      all[axis] = std::clamp(static_cast<int>((position[axis] - low[axis]) / edge), 0, cells[axis] - 1);
+    return all;
+  }
+
+  std::uint32_t cell(const Vector3& position) const {
+    const auto [x, y, z] = coordinates(position);
+    return static_cast<std::uint32_t>((z * cells[1] + y) * cells[0] + x);
+  }
+
+  /// Ranges of slots, one a row of cells, of the box around a sphere.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> rows(const Vector3& centre, double range) const {
+    const Vector3 corner(range, range, range);
+    const auto first = coordinates(centre - corner), last = coordinates(centre + corner);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
+    for (int z = first[2]; z <= last[2]; ++z)
+      for (int y = first[1]; y <= last[1]; ++y) {
+        const auto row = static_cast<std::uint32_t>((z * cells[1] + y) * cells[0]);
+        all.emplace_back((row + static_cast<std::uint32_t>(first[0])) * slots,
+                         (static_cast<std::uint32_t>(last[0] - first[0]) + 1) * slots);
+      }
+    return all;
+  }
+
+  void list_neighbours() {
+    std::vector<std::uint32_t> found(points.size());
+    for (const spot::Grain& grain : ::grains()) {
+      const Point centre = point(grain.position);
+      std::vector<std::uint32_t> near;
+      std::uint32_t own = 0;
+      for (const auto& [first, n] : rows(grain.position, reach)) {
+        const auto count = spot::kernels::base.find_within(points.data() + first, n, centre,
+                                                           static_cast<float>(reach * reach * quanta * quanta), first, found.data());
+        near.insert(near.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+      }
+      for (const std::uint32_t slot : near)
+        if (points[slot].x == centre.x && points[slot].y == centre.y && points[slot].z == centre.z) own = slot;
+      for (const std::uint32_t slot : near)
+        if (slot != own && list_size[own] < list_capacity) lists[own * list_capacity + list_size[own]++] = slot;
+    }
+  }
+};
+
+const Tiles& tiles() {
+  static const Tiles all;
+  return all;
+}
+
+/// Middles of moves in the column above the orifice, where spots are.
+std::vector<Vector3> middles(std::size_t n) {
+  std::vector<Vector3> all;
+  std::uint64_t draw = 1;
+  const auto uniform = [&draw](double from, double to) {
+    draw = draw * 6364136223846793005u + 1442695040888963407u;
+    return from + (to - from) * static_cast<double>(draw >> 11) / 9007199254740992.0;
+  };
+  while (all.size() < n) all.emplace_back(uniform(-12, 12), uniform(-3, 3), uniform(5, 100));
+  return all;
+}
+
+template <typename Kernel>
+void per_sphere(benchmark::State& state, double range, Kernel kernel) {
+  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> rows;
+  std::vector<Point> centres;
+  for (const Vector3& middle : middles(1024)) {
+    rows.push_back(tiles().rows(middle, range));
+    centres.push_back(tiles().point(middle));
+  }
+  std::size_t turn = 0, found = 0;
+  for (auto _ : state) {
+    const std::size_t place = turn % rows.size(), round = turn / rows.size();
+    for (const auto& [first, n] : rows[place]) found += kernel(first, n, centres[place], round);
+    ++turn;
+  }
+  benchmark::DoNotOptimize(found);
+  state.counters["grains"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
+}
+
+/// A move: 2.6 d around its middle; every second round they go back, so that the packing stays.
+void displace(benchmark::State& state, const Kernels& kernels) {
+  std::vector<Point> points = tiles().points;
+  const auto radius_squared = static_cast<float>(radius * radius * quanta * quanta);
+  per_sphere(state, radius, [&](std::uint32_t first, std::uint32_t n, const Point& centre, std::size_t round) {
+    const std::int32_t sign = round % 2 == 0 ? 1 : -1;
+    return static_cast<std::size_t>(
+        kernels.displace(points.data() + first, n, centre, radius_squared, {sign * 80000, 0, -sign * 33000, 0}));
+  });
+}
+
+/// The neighbours of one place.
+void find_within(benchmark::State& state, const Kernels& kernels) {
+  std::vector<std::uint32_t> out(tiles().points.size());
+  const auto reach_squared = static_cast<float>(Tiles::reach * Tiles::reach * quanta * quanta);
+  per_sphere(state, Tiles::reach, [&](std::uint32_t first, std::uint32_t n, const Point& centre, std::size_t) {
+    return kernels.find_within(tiles().points.data() + first, n, centre, reach_squared, first, out.data());
+  });
+}
+
+/// A sweep over all grains.
+void push_off_neighbours(benchmark::State& state, const Kernels& kernels) {
+  const Tiles& all = tiles();
+  std::vector<Point> pushes(all.grains.size());
+  for (auto _ : state) {
+    kernels.push_off_neighbours(all.points.data(), all.grains.data(), all.grains.size(),
+                                {all.lists.data(), all.list_size.data(), Tiles::list_capacity},
+                                {static_cast<float>(1.0 / (quanta * quanta)), 0.6f}, pushes.data());
+    benchmark::DoNotOptimize(pushes.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(all.grains.size()));
+}
+
+/// One cell of eight slots.
+void farthest(benchmark::State& state, const Kernels& kernels) {
+  std::vector<Point> moved = tiles().points;
+  for (Point& point : moved) point.x += 1000;
+  std::size_t place = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(kernels.farthest(tiles().points.data() + place, moved.data() + place, Tiles::slots));
+    place = (place + Tiles::slots) % moved.size();
+  }
+}
+
+/// The accounts of all cells, of which one in ten is due.
+void find_reached(benchmark::State& state, const Kernels& kernels) {
+  std::vector<std::int32_t> accounts(tiles().points.size() / Tiles::slots);
+  for (std::size_t k = 0; k < accounts.size(); ++k) accounts[k] = k % 10 == 0 ? 9 : 1;
+  std::vector<std::uint32_t> found(accounts.size());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(kernels.find_reached(accounts.data(), accounts.size(), 9, found.data()));
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(accounts.size()));
+}
+
+// ---- moves and sweeps, with the instruction set that SPOT_INSTRUCTION_SET names, or the best
+
+struct Silo {
+  std::shared_ptr<const spot::Container> container =
+      spot::box_silo(-25, 25, -4, 4, {Vector3::Zero(), 4.0}, spot::SpotBuffers{1.0, 1.0});
+  spot::Workers workers{1};
+  spot::TiledPacking packing{1.0, 200.0, 0.0, grains(), *container};
+};
+
+/// Moves of a window, with all that TiledPacking does for one: finding its cells, charging them, keeping lists up to date.
+void moves_of_a_window(benchmark::State& state) {
+  Silo silo;
+  const auto n = static_cast<std::size_t>(state.range(0));
+  const double dx = spot::step_width_for(diffusion_length, step_height);
+  std::vector<std::vector<spot::Move>> windows(16);
+  std::vector<int> moved;
+  const auto places = middles(n * windows.size() / 2);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    spot::Move move{};
+    move.middle = places[k];
+    move.step = Vector3(k % 2 == 0 ? dx : -dx, 0.0, step_height);
+    windows[k / n * 2].push_back(move);
+    // And back, so that the packing stays what it is.
+    move.step = -move.step;
+    windows[k / n * 2 + 1].push_back(move);
+  }
+  std::size_t window = 0, grains_moved = 0;
+  for (auto _ : state) {
+    silo.packing.displace(windows[window], radius, influence, *silo.container, silo.workers, moved);
+    for (const int count : moved) grains_moved += static_cast<std::size_t>(count);
+    window = (window + 1) % windows.size();
+  }
+  const auto moves = static_cast<double>(state.iterations()) * static_cast<double>(n);
+  state.SetItemsProcessed(static_cast<std::int64_t>(moves));
+  state.counters["grains_per_move"] = static_cast<double>(grains_moved) / moves;
+}
+
+/// Sweeps over all cells, with collecting the grains, walls and applying the pushes.
+void sweep_over_all(benchmark::State& state) {
+  Silo silo;
+  spot::RelaxationParameters parameters;
+  parameters.alpha = 1.2;
+  parameters.momentum = 0.7;
+  std::size_t swept = 0;
+  for (auto _ : state)  // with 0 moves every cell is due
+    swept += silo.packing.sweep(parameters, 0, 1.0, *silo.container, silo.workers);
+  state.SetItemsProcessed(static_cast<std::int64_t>(swept));
+  state.counters["bytes_per_grain"] =
+      static_cast<double>(silo.packing.memory()) / static_cast<double>(silo.packing.size());
+}
+
+void register_kernels(const Kernels& kernels) {
+  const auto add = [&kernels](const char* name, void (*run)(benchmark::State&, const Kernels&)) {
+    benchmark::RegisterBenchmark((std::string(name) + "/" + kernels.instruction_set).c_str(),
+                                 [run, &kernels](benchmark::State& state) { run(state, kernels); });
+  };
+  add("displace_a_move", displace);
+  add("find_within_a_sphere", find_within);
+  add("push_off_all_neighbours", push_off_neighbours);
+  add("farthest_in_a_cell", farthest);
+  add("find_reached_in_all_cells", find_reached);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  register_kernels(spot::kernels::base);
+#ifdef SPOT_X86_KERNELS
+  if (__builtin_cpu_supports("x86-64-v3")) register_kernels(spot::kernels::v3);
+  if (__builtin_cpu_supports("x86-64-v4")) register_kernels(spot::kernels::v4);
+#endif
+  const std::string best = spot::kernels::best().instruction_set;
+  benchmark::RegisterBenchmark(("TiledPacking_displace_window/" + best).c_str(), moves_of_a_window)->Arg(100)->Arg(2000);
+  benchmark::RegisterBenchmark(("TiledPacking_sweep/" + best).c_str(), sweep_over_all);
+  benchmark::RunSpecifiedBenchmarks();
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "error: %s\n", error.what());
+  return 1;
+}

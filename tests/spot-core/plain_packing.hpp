@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The algorithm of the tiled packing, obvious and slow: no cells, no lists, no wrapped coordinates.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "spot/container.hpp"
+#include "spot/displacement.hpp"
+#include "spot/packing.hpp"
+#include "spot/parameters.hpp"
+#include "spot/quantum.hpp"
+
+namespace scenes {
+
+class PlainPacking {
+ public:
+  /// Places in quanta from the lowest corner, which TiledPacking counts from, too: it decides how the middles of moves
+  /// are rounded.
+  using Place = std::array<std::int64_t, 3>;
+
+  PlainPacking(double diameter, double extent, double outlet, const std::vector<spot::Grain>& grains,
+               const spot::Container& container)
+      : diameter_(diameter), quantum_(diameter, extent, 24), container_(container) {
+    const auto checked = spot::Packing(diameter, extent, grains).grains();
+    low_ = checked.empty() ? spot::Vector3(0.0, 0.0, outlet) : checked[0].position;
+    for (const spot::Grain& grain : checked) low_ = low_.cwiseMin(grain.position);
+    low_.z() = std::min(low_.z(), outlet);
+    for (double& coordinate : low_) coordinate = quantum_.snap(coordinate);
+    for (const spot::Grain& grain : checked)
+      bodies_.push_back({grain.id, grain.held, quanta(grain.position - low_), {0, 0, 0}});
+  }
+
+  int displace(const spot::Move& move, double radius, double influence) {
+    const auto within = static_cast<float>((radius / quantum_.length()) * (radius / quantum_.length()));
+    const Place middle = quanta(move.middle - low_), by = quanta(-influence * move.weight * move.step);
+    int moved = 0;
+    for (Body& body : bodies_) {
+      if (body.held) continue;
+      const float x = difference(body.at[0], middle[0]), y = difference(body.at[1], middle[1]),
+                  z = difference(body.at[2], middle[2]);
+      if (!((x * x + y * y) + z * z <= within)) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) body.at[axis] += by[axis];
+      ++moved;
+    }
+    return moved;
+  }
+
+  /// Over all grains.
+  void sweep(const spot::RelaxationParameters& parameters) {
+    std::vector<Place> pushes;
+    for (const Body& body : bodies_) pushes.push_back(body.held ? Place{0, 0, 0} : push_on(body, parameters));
+    const auto momentum = static_cast<float>(parameters.momentum);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (bodies_[i].held) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto carried = static_cast<std::int64_t>(momentum * static_cast<float>(bodies_[i].last[axis]));
+        bodies_[i].last[axis] = pushes[i][axis] + carried;
+        bodies_[i].at[axis] += bodies_[i].last[axis];
+      }
+    }
+  }
+
+  std::vector<spot::Grain> take_out_below(double outlet) {
+    std::vector<spot::Grain> out;
+    for (std::size_t i = bodies_.size(); i-- > 0;) {
+      if (bodies_[i].held || position(bodies_[i]).z() >= outlet) continue;
+      out.push_back(grain(bodies_[i]));
+      bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    return out;
+  }
+
+  /// In increasing order of ids.
+  std::vector<spot::Grain> grains() const {
+    std::vector<spot::Grain> all;
+    for (const Body& body : bodies_) all.push_back(grain(body));
+    return all;
+  }
+
+ private:
+  struct Body {
+    std::int64_t id;
+    bool held;
+    Place at, last;
+  };
+
+  Place quanta(const spot::Vector3& length) const {
+    const spot::Vector3 q = length / quantum_.length();
+    return {std::llrint(q.x()), std::llrint(q.y()), std::llrint(q.z())};
+  }
+  static float difference(std::int64_t a, std::int64_t b) { return static_cast<float>(a - b); }
+  spot::Vector3 position(const Body& body) const {
+    return low_ + quantum_.length() * spot::Vector3(static_cast<double>(body.at[0]), static_cast<double>(body.at[1]),
+                                                    static_cast<double>(body.at[2]));
+  }
+  spot::Grain grain(const Body& body) const { return {body.id, position(body), body.held}; }
+
+  Place push_on(const Body& own, const spot::RelaxationParameters& parameters) const {
+    const double diameter = diameter_ / quantum_.length();
+    const auto per_square = static_cast<float>(1.0 / (diameter * diameter));
+    const auto share = static_cast<float>(parameters.pair_share());
+    Place sum = {0, 0, 0};
+    const auto add = [&sum](const Place& push) {
+      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += push[axis];
+    };
+    for (const Body& other : bodies_) {
+      if (&other == &own) continue;
+      const float x = difference(own.at[0], other.at[0]), y = difference(own.at[1], other.at[1]),
+                  z = difference(own.at[2], other.at[2]);
+      const float s = 1.0f - ((x * x + y * y) + z * z) * per_square;
+      if (!(s > 0.0f)) continue;
+      const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
+      add({static_cast<std::int64_t>(scale * x), static_cast<std::int64_t>(scale * y),
+           static_cast<std::int64_t>(scale * z)});
+      const double apart = parameters.pair_share() * diameter_;
+      if (own.at == other.at) add(quanta({own.id < other.id ? -apart : apart, 0.0, 0.0}));
+    }
+    for (const spot::AxisPlane& plane : container_.axis_planes()) {
+      const auto axis = static_cast<std::size_t>(plane.axis);
+      const double touching = plane.at + (plane.grains_below ? -0.5 : 0.5) * diameter_ - low_[plane.axis];
+      const std::int64_t beyond = own.at[axis] - std::llrint(touching / quantum_.length());
+      if (plane.grains_below ? beyond > 0 : beyond < 0)
+        sum[axis] -=
+            static_cast<std::int64_t>(static_cast<float>(parameters.fixed_share()) * static_cast<float>(beyond));
+    }
+    spot::WallContacts contacts;
+    container_.other_contacts(position(own), 0.5 * diameter_, contacts);
+    for (const spot::WallContact& wall : contacts)
+      add(quanta(parameters.fixed_share() * (0.5 * diameter_ - wall.distance) * wall.normal));
+    return sum;
+  }
+
+  double diameter_;
+  spot::Quantum quantum_;
+  const spot::Container& container_;
+  spot::Vector3 low_;
+  std::vector<Body> bodies_;
+};
+
+}  // namespace scenes
