@@ -23,7 +23,7 @@ SILOS = {5_000: (10, 27, 1), 22_000: (10, 200, 1), 55_000: (25, 200, 1), 165_000
          1_045_000: (25, 200, 19)}
 EXAMPLE_GRAINS = 55_000
 INJECTIONS = [0.5, 1, 2, 4]  # of the example's
-TIMESTEP, LONG_TIMESTEP = 0.2, 2  # tau; the deck's, and one with which LAMMPS does a tenth as much
+TIMESTEP, LONG_TIMESTEP = 0.2, 2  # tau; with the second, LAMMPS does a tenth as much
 
 
 def example_grains():
