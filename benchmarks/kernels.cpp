@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Time of the kernels of spot-core for each instruction set that this processor has, and of the moves and sweeps that are made of
 // them, on the packing at rest of examples/silo. Lengths in grain diameters. See README.md.
-#include "../spot-core/src/kernels.hpp"
+#include "../spot-core/src/kernel_builds.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -16,13 +16,6 @@
 
 #include "spot/spot_walk.hpp"
 #include "spot/tiled_packing.hpp"
-
-namespace spot::kernels {
-extern const Kernels base;
-#ifdef SPOT_X86_KERNELS
-extern const Kernels v3, v4;
-#endif
-}  // namespace spot::kernels
 
 namespace {
 
@@ -126,7 +119,7 @@ struct Tiles {
       std::vector<std::uint32_t> near;
       std::uint32_t own = 0;
       for (const auto& [first, n] : rows(grain.position, reach)) {
-        const auto count = spot::kernels::base.find_within(points.data() + first, n, centre,
+        const auto count = spot::kernels::best().find_within(points.data() + first, n, centre,
                                                            static_cast<float>(reach * reach * quanta * quanta), first, found.data());
         near.insert(near.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
       }
@@ -298,11 +291,7 @@ void register_kernels(const Kernels& kernels) {
 int main(int argc, char** argv) try {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  register_kernels(spot::kernels::base);
-#ifdef SPOT_X86_KERNELS
-  if (__builtin_cpu_supports("x86-64-v3")) register_kernels(spot::kernels::v3);
-  if (__builtin_cpu_supports("x86-64-v4")) register_kernels(spot::kernels::v4);
-#endif
+  for (const Kernels* build : spot::kernels::runnable()) register_kernels(*build);
   const std::string best = spot::kernels::best().instruction_set;
   benchmark::RegisterBenchmark(("TiledPacking_displace_window/" + best).c_str(), moves_of_a_window)->Arg(100)->Arg(2000);
   benchmark::RegisterBenchmark(("TiledPacking_sweep/" + best).c_str(), sweep_over_all);

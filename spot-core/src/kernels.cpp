@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "kernels.hpp"
+#include "kernel_builds.hpp"
 
 #include <cstdlib>
 #include <cstring>
@@ -16,19 +16,24 @@ extern const Kernels v3, v4;
 namespace {
 
 const Kernels& choose() {
+  const std::vector<const Kernels*> builds = runnable();
   const char* wanted = std::getenv("SPOT_INSTRUCTION_SET");
-  const auto is_wanted = [&](const Kernels& kernels) {
-    return wanted == nullptr || std::strcmp(wanted, kernels.instruction_set) == 0;
-  };
-#ifdef SPOT_X86_KERNELS
-  if (is_wanted(v4) && __builtin_cpu_supports("x86-64-v4")) return v4;
-  if (is_wanted(v3) && __builtin_cpu_supports("x86-64-v3")) return v3;
-#endif
-  if (is_wanted(base)) return base;
+  if (wanted == nullptr) return *builds.back();
+  for (const Kernels* build : builds)
+    if (std::strcmp(wanted, build->instruction_set) == 0) return *build;
   throw InvalidParameter(message("SPOT_INSTRUCTION_SET is '", wanted, "', which this processor cannot run"));
 }
 
 }  // namespace
+
+std::vector<const Kernels*> runnable() {
+  std::vector<const Kernels*> builds = {&base};
+#ifdef SPOT_X86_KERNELS
+  if (__builtin_cpu_supports("x86-64-v3")) builds.push_back(&v3);
+  if (__builtin_cpu_supports("x86-64-v4")) builds.push_back(&v4);
+#endif
+  return builds;
+}
 
 const Kernels& best() {
   static const Kernels& chosen = choose();

@@ -53,8 +53,4 @@ struct Kernels {
   std::size_t (*find_reached)(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found);
 };
 
-/// The best build that this processor can run, or the one that the environment variable SPOT_INSTRUCTION_SET names
-/// (base, x86-64-v3, x86-64-v4; for tests). Throws InvalidParameter if that one cannot run here.
-const Kernels& best();
-
 }  // namespace spot::kernels

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "kernels.hpp"
+#include "kernel_builds.hpp"
 #include "spot/errors.hpp"
 
 namespace spot {
@@ -71,7 +71,8 @@ TiledPacking::TiledPacking(double diameter, double extent, double outlet, const 
       diameter_(diameter),
       extent_(extent),
       quantum_(diameter, extent, quantum_bits),
-      skin_(skin_in_diameters * diameter) {
+      skin_(skin_in_diameters * diameter),
+      list_capacity_(kernels::lanes) {
   // Packing checks what can be wrong with grains.
   const std::vector<Grain> checked = Packing(diameter, extent, grains).grains();
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::max()), high = -low;

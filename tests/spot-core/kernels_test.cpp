@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every build of the kernels gives the bits of the plain one, and the plain one what its description says.
-#include "../../spot-core/src/kernels.hpp"
+#include "../../spot-core/src/kernel_builds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,28 +10,12 @@
 
 #include "scenes.hpp"
 
-namespace spot::kernels {
-extern const Kernels base;
-#ifdef SPOT_X86_KERNELS
-extern const Kernels v3, v4;
-#endif
-}  // namespace spot::kernels
-
 namespace {
 
 using spot::Point;
-using spot::kernels::base;
 using spot::kernels::Kernels;
 
-/// The builds that this processor can run, the plain one first.
-std::vector<const Kernels*> builds() {
-  std::vector<const Kernels*> all = {&base};
-#ifdef SPOT_X86_KERNELS
-  if (__builtin_cpu_supports("x86-64-v3")) all.push_back(&spot::kernels::v3);
-  if (__builtin_cpu_supports("x86-64-v4")) all.push_back(&spot::kernels::v4);
-#endif
-  return all;
-}
+const Kernels& base = *spot::kernels::runnable().front();
 
 /// Quanta in a diameter, the most that there are.
 constexpr double diameter = 0x1p+25 - 1.0;
@@ -97,7 +81,7 @@ TEST(KernelsInvariance, DisplacementIsTheSameInEveryBuild) {
     auto plain = start;
     const int moved = base.displace(plain.data(), plain.size(), middle, squared, by);
     EXPECT_GT(moved, 20);
-    for (const Kernels* build : builds()) {
+    for (const Kernels* build : spot::kernels::runnable()) {
       auto points = start;
       EXPECT_EQ(build->displace(points.data(), points.size(), middle, squared, by), moved);
       expect_same(points, plain, *build);
@@ -127,7 +111,7 @@ TEST(KernelsUnit, DisplacementMovesFreePointsInsideTheSphere) {
 /// Neither empty places nor held grains are ever in reach, wherever they are and however small a diameter is.
 TEST(KernelsUnit, DisplacementLeavesHeldAndEmptyPlacesAlone) {
   const auto largest = static_cast<float>(8.0 * diameter * 8.0 * diameter);
-  for (const Kernels* build : builds()) {
+  for (const Kernels* build : spot::kernels::runnable()) {
     std::vector<Point> points(8, {0, 0, 0, Point::held});
     points[3] = points[6] = nobody;
     const auto before = points;
@@ -179,7 +163,7 @@ TEST(KernelsInvariance, PushesAreTheSameInEveryBuild) {
     }
     EXPECT_GT(pushed, 20);
     EXPECT_LT(coincident, pushed);
-    for (const Kernels* build : builds()) expect_same(listed.pushes(*build, 0.4f), plain, *build);
+    for (const Kernels* build : spot::kernels::runnable()) expect_same(listed.pushes(*build, 0.4f), plain, *build);
   }
 }
 
@@ -225,7 +209,7 @@ TEST(KernelsInvariance, FindWithinIsTheSameInEveryBuild) {
         expected.push_back(1000 + i);
     EXPECT_GT(expected.size(), 10u);
     EXPECT_EQ(plain, expected) << "held grains are found, empty places are not";
-    for (const Kernels* build : builds()) {
+    for (const Kernels* build : spot::kernels::runnable()) {
       std::vector<std::uint32_t> found(points.size());
       found.resize(build->find_within(points.data(), points.size(), centre, squared, 1000, found.data()));
       EXPECT_EQ(found, plain) << build->instruction_set;
@@ -247,7 +231,7 @@ TEST(KernelsInvariance, FarthestIsTheSameInEveryBuild) {
     }
     const float plain = base.farthest(points.data(), references.data(), points.size());
     EXPECT_NEAR(plain, farthest, 1e-6 * farthest);
-    for (const Kernels* build : builds()) {
+    for (const Kernels* build : spot::kernels::runnable()) {
       EXPECT_EQ(build->farthest(points.data(), references.data(), points.size()), plain);
       EXPECT_EQ(build->farthest(references.data(), references.data(), references.size()), 0.0f);
     }
@@ -265,7 +249,7 @@ TEST(KernelsInvariance, FindReachedIsTheSameInEveryBuild) {
       std::vector<std::uint32_t> expected;
       for (std::uint32_t i = 0; i < n; ++i)
         if (values[i] >= least) expected.push_back(i);
-      for (const Kernels* build : builds()) {
+      for (const Kernels* build : spot::kernels::runnable()) {
         std::vector<std::uint32_t> found(n);
         found.resize(build->find_reached(values.data(), n, least, found.data()));
         EXPECT_EQ(found, expected) << build->instruction_set << ", " << n << " values";

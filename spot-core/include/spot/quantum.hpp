@@ -22,9 +22,6 @@ class Quantum {
   /// floating point (no -ffast-math).
   double round(double displacement) const { return (displacement + shift_) - shift_; }
 
-  /// What round() adds and subtracts, for kernels that round by themselves.
-  double shift() const { return shift_; }
-
   /// The nearest multiple, for a position: |position| up to `extent`.
   double snap(double position) const;
 

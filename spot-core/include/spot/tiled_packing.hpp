@@ -148,7 +148,7 @@ class TiledPacking {
   std::array<std::int64_t, 3> edge_quanta_;  // the same
   std::array<int, 3> n_ = {0, 0, 0};         // cells along each axis
   std::uint32_t capacity_ = 8;
-  std::uint32_t list_capacity_ = 16;
+  std::uint32_t list_capacity_;
   std::size_t size_ = 0;
 
   std::vector<Point> points_, references_;
