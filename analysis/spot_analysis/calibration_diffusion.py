@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .calibration_estimate import CalibrationError, Estimate, combine, estimate
-from .calibration_fits import fit_line
+from .fits import fit_line
 
 DROPS = (1.0, 5.0)  # d; below, grains rattle in their cages
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .calibration_fits import fit_line
+from .fits import fit_line
 from .snapshot import LAG_TAU, TIME_TOLERANCE
 
 FRONT_HEIGHTS = np.arange(10.0, 91.0, 10.0)

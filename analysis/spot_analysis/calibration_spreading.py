@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .calibration_estimate import CalibrationError, Estimate, combine, estimate
-from .calibration_fits import fit_family, fit_line
+from .calibration_fits import fit_family
+from .fits import fit_line
 
 HEIGHTS = np.arange(10.0, 51.0, 5.0)  # d, middles of slices
 SLICE = 5.0  # d, their thickness
