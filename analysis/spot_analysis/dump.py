@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Reader for the text dumps of LAMMPS and LIGGGHTS (``dump custom``, ``dump atom``).
 
-Plain or gzip (told by content), one frame or many in a file, any number and order of columns, any number of
+Plain, gzip or zstd (told by content), one frame or many in a file, any number and order of columns, any number of
 atoms in each frame. Positions are taken from the first complete set of columns among
 
     x y z, xu yu zu, xs ys zs, xsu ysu zsu
@@ -20,11 +20,15 @@ import zlib
 from dataclasses import dataclass, field
 
 import numpy as np
+import zstandard
 
 from .errors import DumpError, TruncatedFrame
 
 POSITION_COLUMNS = (("x", "y", "z"), ("xu", "yu", "zu"), ("xs", "ys", "zs"), ("xsu", "ysu", "zsu"))
 SCALED = POSITION_COLUMNS[2:]
+
+OPENERS = {b"\x1f\x8b": gzip.open, b"\x28\xb5\x2f\xfd": zstandard.open}  # by the first bytes of a file
+DAMAGED = (zlib.error, gzip.BadGzipFile, zstandard.ZstdError)
 
 
 @dataclass(frozen=True)
@@ -102,7 +106,7 @@ def read_file(path, extra=()):
             frames += 1
             yield frame
         if frames == 0:
-            raise DumpError(f"{path}: the file is empty")
+            raise _nothing_in(path)
 
 
 class _Lines:
@@ -119,8 +123,8 @@ class _Lines:
             lines = list(itertools.islice(self._handle, count))
         except EOFError as error:
             raise TruncatedFrame(f"{self.path}: the compressed file ends after line {self.number}") from error
-        except (zlib.error, gzip.BadGzipFile) as error:
-            raise DumpError(f"{self.path}: damaged gzip data after line {self.number} ({error})") from error
+        except DAMAGED as error:
+            raise DumpError(f"{self.path}: damaged compressed data after line {self.number} ({error})") from error
         self.number += len(lines)
         return lines
 
@@ -140,8 +144,8 @@ class _Lines:
 def _open_text(path):
     try:
         with open(path, "rb") as probe:
-            compressed = probe.read(2) == b"\x1f\x8b"
-        opener = gzip.open if compressed else open
+            start = probe.read(4)
+        opener = next((OPENERS[magic] for magic in OPENERS if start.startswith(magic)), open)
         with opener(path, "rt", encoding="ascii", errors="replace") as handle:
             yield handle
     except OSError as error:
@@ -272,6 +276,13 @@ def _check_finite(ids, positions, lines):
                           f"({bad.size} such grains)")
 
 
+def _nothing_in(path):
+    """The error for a file without a single line."""
+    if os.path.getsize(path) > 0:  # zstd says nothing when its data are cut off
+        return TruncatedFrame(f"{path}: the compressed file ends before the first line")
+    return DumpError(f"{path}: the file is empty")
+
+
 def _first_timestep(path):
     """Timestep of a file's first frame; infinite where the file ends before it."""
     with _open_text(path) as handle:
@@ -281,7 +292,7 @@ def _first_timestep(path):
             while "TIMESTEP" not in header:
                 taken = lines.take(1)
                 if not taken and lines.number == 0:
-                    raise DumpError(f"{path}: the file is empty")
+                    raise _nothing_in(path)
                 if not taken:
                     return float("inf")
                 if not taken[0].startswith("ITEM: "):
@@ -296,5 +307,5 @@ def _is_local_dump(path):
     with _open_text(path) as handle:
         try:
             return any(line.startswith("ITEM: NUMBER OF ENTRIES") for line in itertools.islice(handle, 8))
-        except (EOFError, zlib.error, gzip.BadGzipFile):
+        except (EOFError, *DAMAGED):
             return False

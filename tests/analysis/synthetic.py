@@ -7,6 +7,7 @@ import json
 import math
 
 import numpy as np
+import zstandard
 
 SCENE = {"program": "synthetic", "diameter": 1.0, "gravity": 1.0, "timestep": 0.01,
          "half_width_x": 10.0, "half_depth_y": 4.0, "orifice_radius": 12.0}  # no base: the plug falls through
@@ -25,8 +26,9 @@ def frame_text(timestep, ids, positions, columns="id x y z", before="", box=((-1
 
 
 def write_text(path, text):
-    """Write plain text, or gzip if the name says so; returns the path as text."""
-    path.write_bytes(gzip.compress(text.encode()) if path.suffix == ".gz" else text.encode())
+    """Write plain text, or gzip or zstd if the name says so; returns the path as text."""
+    compress = {".gz": gzip.compress, ".zst": zstandard.compress}.get(path.suffix, bytes)
+    path.write_bytes(compress(text.encode()))
     return str(path)
 
 

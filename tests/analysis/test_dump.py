@@ -5,6 +5,7 @@ import gzip
 
 import numpy as np
 import pytest
+import zstandard
 from spot_analysis.dump import find_dumps, read_file, read_frames
 from spot_analysis.errors import DumpError, TruncatedFrame
 
@@ -32,7 +33,7 @@ def only_frame(path, **options):
     return frames[0]
 
 
-@pytest.mark.parametrize("name", ["a.dump", "a.dump.gz", "a.lammpstrj"])
+@pytest.mark.parametrize("name", ["a.dump", "a.dump.gz", "a.dump.zst", "a.lammpstrj"])
 def test_sorted_by_id_plain_and_gzip(dump, name):
     frame = only_frame(dump(frame_text(7, IDS, POSITIONS), name))
     assert frame.timestep == 7
@@ -126,21 +127,28 @@ def test_truncated_file_in_the_middle_is_an_error(dump, tmp_path):
         list(read_frames(str(tmp_path)))
 
 
-def test_truncated_gzip(tmp_path):
+COMPRESSED = {"a.dump.gz": (gzip.compress, "compressed file ends"),
+              "a.dump.zst": (zstandard.compress, "file ends inside")}
+
+
+@pytest.mark.parametrize("name", COMPRESSED)
+def test_truncated_compressed_file(tmp_path, name):
+    compress, cause = COMPRESSED[name]
     rng = np.random.default_rng(1)
-    text = "".join(frame_text(step, np.arange(500), rng.random((500, 3))) for step in (0, 1, 2))
-    path = tmp_path / "a.dump.gz"
-    data = gzip.compress(text.encode())
+    text = "".join(frame_text(step, np.arange(5000), rng.random((5000, 3))) for step in (0, 1, 2))
+    path = tmp_path / name
+    data = compress(text.encode())
     path.write_bytes(data[:len(data) * 5 // 6])
     warnings = []
     assert [frame.timestep for frame in read_frames(str(path), warn=warnings.append)] == [0, 1]
-    assert "compressed file ends" in warnings[0]
+    assert cause in warnings[0]
 
 
-def test_damaged_gzip(tmp_path):
-    path = tmp_path / "a.dump.gz"
-    path.write_bytes(b"\x1f\x8b" + b"nonsense" * 20)
-    with pytest.raises(DumpError, match="a.dump.gz"):
+@pytest.mark.parametrize("name, magic", [("a.dump.gz", b"\x1f\x8b"), ("a.dump.zst", b"\x28\xb5\x2f\xfd")])
+def test_damaged_compressed_file(tmp_path, name, magic):
+    path = tmp_path / name
+    path.write_bytes(magic + b"nonsense" * 20)
+    with pytest.raises(DumpError, match=name):
         list(read_frames(str(path)))
 
 
@@ -179,3 +187,10 @@ def test_nothing_to_read(tmp_path):
     for source in (tmp_path, tmp_path / "absent", tmp_path / "*.dump"):
         with pytest.raises(DumpError, match="no "):
             find_dumps(str(source))
+
+
+def test_zstd_file_cut_before_its_first_line(tmp_path):
+    path = tmp_path / "a.dump.zst"
+    path.write_bytes(zstandard.compress(FRAMES.encode())[:30])
+    with pytest.raises(TruncatedFrame, match="ends before the first line"):
+        list(read_frames(str(path)))

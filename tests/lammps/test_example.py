@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """examples/silo/in.silo_spot, a short stretch of it, on its real packing."""
 
-import gzip
 import json
 import os
 import subprocess
 
 import numpy as np
 import pytest
+import zstandard
 
 from lammps_runs import DISTRIBUTION, FRONT_END, PLUGIN, ROOT, needs_distribution
 
@@ -21,8 +21,8 @@ def run_example(program, out, **variables):
         command += ["-var", name, str(value)]
     done = subprocess.run(command, cwd=SILO, env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-    return {step_of(path.name): gzip.decompress(path.read_bytes())
-            for path in sorted(out.glob("drain.*.dump.gz"), key=lambda path: step_of(path.name))}
+    return {step_of(path.name): zstandard.open(path, "rb").read()
+            for path in sorted(out.glob("drain.*.dump.zst"), key=lambda path: step_of(path.name))}
 
 
 def step_of(name):
