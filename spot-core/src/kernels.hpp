@@ -25,6 +25,11 @@ struct Push {
   float share;       ///< of the overlap, by which each moves
 };
 
+/// Of the corrections of some grains: the square of the longest, and how deep the deepest overlap was (as in a push).
+struct Corrections {
+  float longest_squared, depth;
+};
+
 /// One build of all kernels. They are compiled several times, for different instruction sets, from kernels.inl; results
 /// are the same bits for all: every number goes through the same operations (-ffp-contract=off), and sums are of
 /// integers. Lengths are in quanta, their squares in single precision.
@@ -41,8 +46,13 @@ struct Kernels {
   void (*push_off_neighbours)(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                               const Push& push, Point* pushes);
 
-  /// Writes first, first + 1, ... of those of n points, empty ones apart, that are within reach of `centre`; returns how
-  /// many. `found` has room for all of them.
+  /// Corrects n grains: each moves by its push and by the part `kept` of its last correction, cut to whole quanta, and
+  /// remembers that as its last.
+  Corrections (*correct)(Point* points, Point* last, const std::uint32_t* grains, std::size_t n, const Point* pushes,
+                         float kept);
+
+  /// Writes first, first + 1, ... of those of n points, empty ones apart, that are within reach of `centre`; returns
+  /// how many. `found` has room for all of them.
   std::size_t (*find_within)(const Point* points, std::size_t n, const Point& centre, float reach_squared,
                              std::uint32_t first, std::uint32_t* found);
 

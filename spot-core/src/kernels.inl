@@ -8,6 +8,7 @@
 namespace {
 
 using spot::Point;
+using spot::kernels::Corrections;
 using spot::kernels::Lists;
 
 /// Differences of states are seen only where an empty place is on one side.
@@ -78,6 +79,26 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
   }
 }
 
+std::int32_t kept_of(std::int32_t last, float kept) {
+  return static_cast<std::int32_t>(static_cast<float>(last) * kept);
+}
+
+Corrections correct(Point* points, Point* last, const std::uint32_t* grains, std::size_t n, const Point* pushes,
+                    float kept) {
+  Corrections corrections = {0.0f, 0.0f};
+  for (std::size_t i = 0; i < n; ++i) {
+    Point& by = last[grains[i]];
+    by = {pushes[i].x + kept_of(by.x, kept), pushes[i].y + kept_of(by.y, kept), pushes[i].z + kept_of(by.z, kept), 0};
+    add(points[grains[i]], by.x, by.y, by.z);
+    const float squared = square_distance(by, {0, 0, 0, 0}, -1);
+    if (squared > corrections.longest_squared) corrections.longest_squared = squared;
+    float depth;
+    __builtin_memcpy(&depth, &pushes[i].state, sizeof depth);
+    if (depth > corrections.depth) corrections.depth = depth;
+  }
+  return corrections;
+}
+
 std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i)
@@ -88,13 +109,41 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 #else
 
 typedef std::int32_t Quarter __attribute__((vector_size(16), may_alias));  // one point
-typedef std::int32_t Half __attribute__((vector_size(32)));                // two
+typedef float QuarterFloats __attribute__((vector_size(16)));
+typedef std::int32_t Half __attribute__((vector_size(32)));  // two
 
 inline Half join(Quarter a, Quarter b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
 inline Quarter low_half(Half p) { return __builtin_shufflevector(p, p, 0, 1, 2, 3); }
 inline Quarter high_half(Half p) { return __builtin_shufflevector(p, p, 4, 5, 6, 7); }
 inline Quarter load_point(const Point& point) { return *reinterpret_cast<const Quarter*>(&point); }
+inline void store_point(Quarter point, Point& to) { *reinterpret_cast<Quarter*>(&to) = point; }
 inline Quarter greater(Quarter a, Quarter b) { return a > b ? a : b; }
+
+inline float float_of(std::int32_t bits) {
+  float value;
+  __builtin_memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+Corrections correct(Point* points, Point* last, const std::uint32_t* grains, std::size_t n, const Point* pushes,
+                    float kept) {
+  constexpr Quarter coordinates = {-1, -1, -1, 0};
+  Quarter greatest = {};  // the bits of a squared length and, last, of a depth
+  for (std::size_t i = 0; i < n; ++i) {
+    Point &point = points[grains[i]], &by = last[grains[i]];
+    const Quarter push = load_point(pushes[i]);
+    const QuarterFloats carried = __builtin_convertvector(load_point(by), QuarterFloats) * kept;
+    const Quarter step = (push + __builtin_convertvector(carried, Quarter)) & coordinates;
+    store_point(step, by);
+    store_point(load_point(point) + step, point);
+    const QuarterFloats f = __builtin_convertvector(step, QuarterFloats), squares = f * f;
+    const QuarterFloats pairs = squares + __builtin_shufflevector(squares, squares, 1, 0, 3, 2);
+    const QuarterFloats squared = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
+    // Floats that are not negative are in the order of their bits.
+    greatest = greater(greatest, __builtin_shufflevector((Quarter)squared, push, 0, 0, 0, 7));
+  }
+  return {float_of(greatest[0]), float_of(greatest[3])};
+}
 
 #ifdef __AVX512F__
 
@@ -215,9 +264,7 @@ inline float greatest(Pack floats_as_integers) {
   const Quarter q = greatest_part(floats_as_integers);
   std::int32_t largest = q[0];
   for (int k = 1; k < 4; ++k) largest = q[k] > largest ? q[k] : largest;
-  float value;
-  __builtin_memcpy(&value, &largest, sizeof value);
-  return value;
+  return float_of(largest);
 }
 
 float farthest(const Point* points, const Point* references, std::size_t n) {
@@ -292,7 +339,7 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 namespace spot::kernels {
 
 extern const Kernels SPOT_KERNELS;
-const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &displace, &push_off_neighbours,
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &displace, &push_off_neighbours, &correct,
                               &find_within,         &farthest, &find_reached};
 
 }  // namespace spot::kernels

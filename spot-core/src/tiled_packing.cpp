@@ -490,19 +490,24 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
 }
 
 void TiledPacking::collect(Share& share) const {
-  share.active.resize(static_cast<std::size_t>(share.last - share.first) * capacity_);
+  const std::size_t slots = static_cast<std::size_t>(share.last - share.first) * capacity_;
+  share.active.resize(slots);
+  share.walled.resize(slots);
   share.in_cell.clear();
-  std::size_t n = 0;
+  std::uint32_t n = 0, walled = 0;
   for (std::uint32_t k = share.first; k < share.last; ++k) {
-    const std::size_t before = n;
-    const std::uint32_t first = due_cells_[k] * capacity_;
+    const std::uint32_t before = n, first = due_cells_[k] * capacity_;
     for (std::uint32_t slot = first; slot < first + capacity_; ++slot) {
+      const bool active = points_[slot].state == Point::free;
+      share.walled[walled] = n;
+      walled += active && near_wall_[slot] != 0 ? 1 : 0;
       share.active[n] = slot;
-      n += points_[slot].state == Point::free ? 1 : 0;
+      n += active ? 1 : 0;
     }
     share.in_cell.push_back(static_cast<std::uint8_t>(n - before));
   }
   share.active.resize(n);
+  share.walled.resize(walled);
 }
 
 void TiledPacking::push_apart(Share& share, const RelaxationParameters& parameters, const Container& container) const {
@@ -539,9 +544,8 @@ void TiledPacking::push(Point& point, const Vector3& by) const {
 }
 
 void TiledPacking::push_off_planes(Share& share, float strength) const {
-  for (std::size_t k = 0; k < share.active.size(); ++k) {
+  for (const std::uint32_t k : share.walled) {
     const std::uint32_t slot = share.active[k];
-    if (near_wall_[slot] == 0) continue;
     for (std::size_t p = 0; p < planes_.size(); ++p) {
       if ((near_wall_[slot] >> p & 1u) == 0) continue;
       const TouchingPlane& plane = planes_[p];
@@ -555,7 +559,7 @@ void TiledPacking::push_off_planes(Share& share, float strength) const {
 void TiledPacking::push_off_other_walls(Share& share, double strength, const Container& container) const {
   const double radius = 0.5 * diameter_;
   WallContacts contacts;
-  for (std::size_t k = 0; k < share.active.size(); ++k) {
+  for (const std::uint32_t k : share.walled) {
     if ((near_wall_[share.active[k]] & near_other_wall) == 0) continue;
     other_contacts(container, position(share.active[k]), radius, contacts);
     for (const WallContact& contact : contacts)
@@ -564,29 +568,16 @@ void TiledPacking::push_off_other_walls(Share& share, double strength, const Con
 }
 
 void TiledPacking::apply(const Share& share, int due, float deepest, float momentum) {
-  const auto carried = [momentum](std::int32_t last) {
-    return static_cast<std::int32_t>(momentum * static_cast<float>(last));
-  };
   std::size_t k = 0;
   for (std::uint32_t c = share.first; c < share.last; ++c) {
-    const std::uint32_t cell = due_cells_[c];
-    float longest = 0.0f, depth = 0.0f;
-    for (const std::size_t end = k + share.in_cell[c - share.first]; k < end; ++k) {
-      const Point& push = share.pushes[k];
-      Point& last = momenta_[share.active[k]];
-      last = {push.x + carried(last.x), push.y + carried(last.y), push.z + carried(last.z), 0};
-      Point& point = points_[share.active[k]];
-      point.x = add(point.x, last.x);
-      point.y = add(point.y, last.y);
-      point.z = add(point.z, last.z);
-      const auto x = static_cast<float>(last.x), y = static_cast<float>(last.y), z = static_cast<float>(last.z);
-      longest = std::max(longest, x * x + y * y + z * z);
-      depth = std::max(depth, depth_of(push));
-    }
+    const std::uint32_t cell = due_cells_[c], n = share.in_cell[c - share.first];
+    const kernels::Corrections corrections = kernels_->correct(points_.data(), momenta_.data(), share.active.data() + k,
+                                                               n, share.pushes.data() + k, momentum);
+    k += n;
     account_[cell] -= due;
-    if (depth > deepest) account_[cell] = std::max(account_[cell], due);
+    if (corrections.depth > deepest) account_[cell] = std::max(account_[cell], due);
     // A little more than it may be, for the rounding.
-    path_[cell] += static_cast<std::int32_t>(std::min(1.001f * std::sqrt(longest), 1e9f)) + 1;
+    path_[cell] += static_cast<std::int32_t>(std::min(1.001f * std::sqrt(corrections.longest_squared), 1e9f)) + 1;
   }
 }
 

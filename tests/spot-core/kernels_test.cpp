@@ -195,6 +195,68 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
   }
 }
 
+/// The last corrections of as many grains as there are pushes, the same kind of thing.
+struct Correcting {
+  std::vector<Point> points, last, pushes;
+  std::vector<std::uint32_t> grains;
+  spot::kernels::Corrections at_most;
+
+  Correcting(std::uint64_t seed, std::size_t n) : points(points_in_box(3 * n, 4.0, seed)), last(3 * n, {0, 0, 0, 0}) {
+    scenes::Draws draws(seed);
+    const auto whole = [&draws](double most) { return static_cast<std::int32_t>(draws.uniform(-most, most)); };
+    for (std::uint32_t i = 0; i < n; ++i) {
+      grains.push_back(3 * i + 1);
+      last[grains[i]] = {whole(1e5), whole(1e5), whole(1e5), 0};
+      const auto depth = static_cast<float>(draws.uniform(0.0, 0.1));
+      pushes.push_back({whole(1e6), whole(1e6), whole(1e6), 0});
+      std::memcpy(&pushes[i].state, &depth, sizeof depth);
+    }
+  }
+
+  void run(const Kernels& build) {
+    at_most = build.correct(points.data(), last.data(), grains.data(), grains.size(), pushes.data(), 0.6f);
+  }
+};
+
+TEST(KernelsAnalytic, CorrectionsAreThePushAndAPartOfTheLast) {
+  const Correcting before(1, 7);
+  Correcting after = before;
+  after.run(base);
+  double longest = 0.0, deepest = 0.0;
+  for (std::size_t i = 0; i < before.grains.size(); ++i) {
+    const std::uint32_t grain = before.grains[i];
+    const auto expected = [](std::int32_t push, std::int32_t last) {
+      return push + static_cast<std::int32_t>(0.6f * static_cast<float>(last));
+    };
+    const Point by = {expected(before.pushes[i].x, before.last[grain].x),
+                      expected(before.pushes[i].y, before.last[grain].y),
+                      expected(before.pushes[i].z, before.last[grain].z), 0};
+    expect_same({after.last[grain]}, {by}, base);
+    EXPECT_EQ(after.points[grain].y, wrapped(std::int64_t{before.points[grain].y} + by.y));
+    EXPECT_EQ(after.points[grain].state, before.points[grain].state);
+    longest = std::max(longest, squared_distance(by, {0, 0, 0, 0}));
+    deepest = std::max<double>(deepest, depth_of(before.pushes[i]));
+    expect_same({after.points[grain - 1]}, {before.points[grain - 1]}, base);
+  }
+  EXPECT_NEAR(after.at_most.longest_squared, longest, 1e-6 * longest);
+  EXPECT_EQ(after.at_most.depth, deepest);
+}
+
+TEST(KernelsInvariance, CorrectionsAreTheSameInEveryBuild) {
+  for (std::size_t n = 0; n <= 40; ++n) {
+    Correcting plain(n + 1, n);
+    plain.run(base);
+    for (const Kernels* build : spot::kernels::runnable()) {
+      Correcting other(n + 1, n);
+      other.run(*build);
+      expect_same(other.points, plain.points, *build);
+      expect_same(other.last, plain.last, *build);
+      EXPECT_EQ(other.at_most.longest_squared, plain.at_most.longest_squared) << build->instruction_set;
+      EXPECT_EQ(other.at_most.depth, plain.at_most.depth) << build->instruction_set;
+    }
+  }
+}
+
 TEST(KernelsInvariance, FindWithinIsTheSameInEveryBuild) {
   const double reach = 1.5 * diameter;
   const auto squared = static_cast<float>(reach * reach);

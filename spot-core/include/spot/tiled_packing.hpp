@@ -85,6 +85,7 @@ class TiledPacking {
     std::uint32_t first, last;          // of due_cells_
     std::vector<std::uint32_t> active;  // slots, cell by cell
     std::vector<std::uint8_t> in_cell;  // how many of them are in each cell
+    std::vector<std::uint32_t> walled;  // places in `active` of those near walls
     std::vector<Point> pushes;
   };
 
