@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "spot_bytes.hpp"
+
 namespace spot {
 
 namespace {
@@ -16,6 +18,21 @@ bool later(const Spot& a, const Spot& b) {
 
 SpotPopulation::SpotPopulation(const SpotParameters& parameters, const Container& container)
     : walk_(parameters, container), next_birth_(walk_.time_before_birth(0)) {}
+
+SpotPopulation::SpotPopulation(const SpotParameters& parameters, const Container& container, ByteReader& saved)
+    : walk_(parameters, container) {
+  born_ = saved.take<std::int64_t>();
+  next_birth_ = saved.take<double>();
+  for (auto spots = saved.take<std::uint64_t>(); spots > 0; --spots) spots_.push_back(take_spot(saved));
+  std::make_heap(spots_.begin(), spots_.end(), later);
+}
+
+void SpotPopulation::save(Bytes& bytes) const {
+  append(bytes, born_);
+  append(bytes, next_birth_);
+  append(bytes, static_cast<std::uint64_t>(spots_.size()));
+  for (const Spot& spot : spots_) append(bytes, spot);
+}
 
 void SpotPopulation::settle() {
   if (in_hand_) std::push_heap(spots_.begin(), spots_.end(), later);

@@ -7,6 +7,20 @@
 
 namespace spot {
 
+namespace {
+
+std::vector<Grain> take_grains(ByteReader& saved) {
+  std::vector<Grain> grains;
+  for (auto n = saved.take<std::uint64_t>(); n > 0; --n) {
+    const auto id = saved.take<std::int64_t>();
+    const auto position = saved.take<Vector3>();
+    grains.push_back({id, position, saved.take<bool>()});
+  }
+  return grains;
+}
+
+}  // namespace
+
 TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
                                          const DrainageLimits& limits, std::shared_ptr<const Container> container,
                                          Packing packing)
@@ -15,6 +29,37 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
       population_(spots, *container_),
       relaxation_(relaxation) {
   require_valid_start();
+}
+
+TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
+                                         const DrainageLimits& limits, std::shared_ptr<const Container> container,
+                                         double diameter, double extent, const Bytes& saved)
+    : TimeOrderedDrainage(spots, relaxation, limits, std::move(container), diameter, extent, ByteReader(saved)) {}
+
+TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
+                                         const DrainageLimits& limits, std::shared_ptr<const Container> container,
+                                         double diameter, double extent, ByteReader saved)
+    : Drainage(spots, relaxation, limits, std::move(container), diameter),
+      packing_(diameter, extent, take_grains(saved)),
+      population_(spots, *container_, saved),
+      relaxation_(relaxation) {
+  counters_ = saved.take<Counters>();
+  relaxed_everywhere_ = saved.take<std::int64_t>();
+}
+
+/// Lists need not be saved: no bit depends on them.
+Bytes TimeOrderedDrainage::save() const {
+  Bytes bytes;
+  append(bytes, static_cast<std::uint64_t>(packing_.size()));
+  for (const Grain& grain : packing_.grains()) {
+    append(bytes, grain.id);
+    append(bytes, grain.position);
+    append(bytes, grain.held);
+  }
+  population_.save(bytes);
+  append(bytes, counters_);
+  append(bytes, relaxed_everywhere_);
+  return bytes;
 }
 
 void TimeOrderedDrainage::advance_to(double time) {

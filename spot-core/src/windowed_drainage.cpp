@@ -17,34 +17,33 @@ constexpr int most_sweeps = 16;
 /// A cell with an overlap deeper than this, in diameters, is due once more. DEM's deepest is 0.013.
 constexpr double deepest_overlap = 0.02;
 
-constexpr double removed = std::numeric_limits<double>::infinity();
+}  // namespace
 
-double moves_until_due(const SpotParameters& spots, double tolerance) {
+double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tolerance) {
   if (!(tolerance > 0.0) || !std::isfinite(tolerance))
     throw InvalidParameter(message("relaxation tolerance is ", tolerance, " but must be positive and finite"));
   const double displacement = spots.influence * spots.step_width;
   return std::max(0.1, 12.0 * tolerance * tolerance / (displacement * displacement));
 }
 
-double positive_window(double window) {
+double WindowedDrainage::positive_window(double window) {
   if (!(window > 0.0) || !std::isfinite(window))
     throw InvalidParameter(message("window is ", window, " but must be positive and finite"));
   return window;
 }
 
-}  // namespace
-
 WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
                                    const DrainageLimits& limits, double window, int threads,
                                    std::shared_ptr<const Container> container, double diameter, double extent,
-                                   const std::vector<Grain>& grains)
+                                   const std::vector<Grain>& grains, std::shared_ptr<Communicator> communicator)
     : Drainage(spots, relaxation, limits, std::move(container), diameter),
+      communicator_(std::move(communicator)),
       workers_(std::make_unique<Workers>(threads)),
       window_(positive_window(window)),
       due_(moves_until_due(spots, relaxation.tolerance * diameter)),
-      packing_(diameter, extent, limits.outlet, grains, *container_),
-      walk_(spots, *container_),
-      next_birth_(walk_.time_before_birth(0)) {
+      packing_(diameter, extent, limits.outlet, grains, *container_, communicator_),
+      walk_(spots, *container_) {
+  next_birth_ = walk_.time_before_birth(0);
   TiledPacking::require_radius(spots.radius, diameter);
   require_valid_start();
 }
@@ -55,7 +54,10 @@ void WindowedDrainage::advance_to(double time) {
     const double until = static_cast<double>(++windows_) * window_;
     give_birth(until);
     walk(until);
+    share_turns();
     displace();
+    gather_counts();
+    settle();
     relax();
     const std::size_t drained_before = drained_.size();
     packing_.take_out_below(limits_.outlet, drained_);
@@ -63,60 +65,66 @@ void WindowedDrainage::advance_to(double time) {
   }
 }
 
+/// Every rank sees all births, and keeps its own.
 void WindowedDrainage::give_birth(double until) {
   while (next_birth_ <= until) {
-    spots_.push_back(walk_.birth(born_, next_birth_, container()));
-    next_step_.push_back(spots_.back().next_step);
-    weights_.push_back(1.0);
+    const Spot spot = walk_.birth(born_, next_birth_, container());
+    if (here(spot.position)) walkers_.push_back({spot, 1.0, false});
     next_birth_ += walk_.time_before_birth(++born_);
   }
 }
 
 void WindowedDrainage::walk(double until) {
-  moves_.clear();
-  movers_.clear();
-  for (std::size_t k = 0; k < spots_.size(); ++k)
-    while (next_step_[k] <= until) {
-      moves_.push_back(walk_.step(spots_[k], container()));
-      moves_.back().weight = weights_[k];
-      movers_.push_back(k);
-      next_step_[k] = spots_[k].next_step;
+  turns_.clear();
+  for (Walker& walker : walkers_) {
+    if (walker.removed) continue;
+    const std::size_t first = turns_.size();
+    while (walker.spot.next_step <= until) {
+      turns_.push_back({walk_.step(walker.spot, container()), communicator_->rank(), 0});
+      turns_.back().move.weight = walker.weight;
     }
+    for (std::size_t k = first; k < turns_.size(); ++k) turns_[k].owner = packing_.owner(walker.spot.position.z());
+  }
 }
 
 void WindowedDrainage::displace() {
+  moves_.clear();
+  for (const Turn& turn : turns_) moves_.push_back(turn.move);
   packing_.displace(moves_, parameters_.radius, parameters_.influence, container(), *workers_, moved_);
+  for (std::size_t k = 0; k < turns_.size(); ++k) {
+    turns_[k].moved = moved_[k];
+    counters_.grains_moved += moved_[k];
+  }
+}
+
+/// What moves tell their spots: their weight from now on, and that there is nothing left above.
+void WindowedDrainage::settle() {
   const double inside = container().orifice().centre.z() + parameters_.radius;
-  for (std::size_t m = 0; m < moves_.size(); ++m) {
+  auto walker = walkers_.begin();
+  for (const Turn& turn : turns_) {
+    if (turn.owner != communicator_->rank()) continue;
     ++counters_.moves;
-    counters_.grains_moved += moved_[m];
-    weights_[movers_[m]] = fixed_volume_weight(parameters_, moves_[m].middle.z() - limits_.outlet, moved_[m]);
-    if (moved_[m] > 0 || moves_[m].middle.z() <= inside || next_step_[movers_[m]] == removed) continue;
-    // Out at the top of the packing.
-    next_step_[movers_[m]] = removed;
+    while (walker->spot.id < turn.move.spot) ++walker;
+    const double height = turn.move.middle.z();
+    walker->weight = fixed_volume_weight(parameters_, height - limits_.outlet, turn.moved);
+    if (turn.moved > 0 || height <= inside || walker->removed) continue;
+    walker->removed = true;
     ++removed_;
   }
-  if (removed_ > spots_.size() / 16) drop_removed();
+  if (removed_ > walkers_.size() / 16) drop_removed();
 }
 
 void WindowedDrainage::drop_removed() {
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < spots_.size(); ++k) {
-    if (next_step_[k] == removed) continue;
-    spots_[kept] = spots_[k];
-    weights_[kept] = weights_[k];
-    next_step_[kept++] = next_step_[k];
-  }
-  spots_.resize(kept);
-  next_step_.resize(kept);
-  weights_.resize(kept);
+  const auto end =
+      std::remove_if(walkers_.begin(), walkers_.end(), [](const Walker& walker) { return walker.removed; });
+  walkers_.erase(end, walkers_.end());
   removed_ = 0;
 }
 
 std::vector<Spot> WindowedDrainage::spots() const {
   std::vector<Spot> live;
-  for (std::size_t k = 0; k < spots_.size(); ++k)
-    if (next_step_[k] != removed) live.push_back(spots_[k]);
+  for (const Walker& walker : walkers_)
+    if (!walker.removed) live.push_back(walker.spot);
   return live;
 }
 
@@ -132,8 +140,8 @@ void WindowedDrainage::relax() {
 }
 
 void WindowedDrainage::replace_grains(const std::vector<Grain>& grains) {
-  replace_if_inside(packing_,
-                    TiledPacking(packing_.diameter(), packing_.extent(), limits_.outlet, grains, container()));
+  replace_if_inside(packing_, TiledPacking(packing_.diameter(), packing_.extent(), limits_.outlet, grains, container(),
+                                           communicator_));
 }
 
 void WindowedDrainage::replace_container(std::shared_ptr<const Container> container) {

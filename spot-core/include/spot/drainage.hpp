@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "spot/bytes.hpp"
 #include "spot/container.hpp"
 #include "spot/packing.hpp"
 #include "spot/parameters.hpp"
@@ -57,12 +58,19 @@ class Drainage {
   /// Bytes held by the packing.
   virtual std::size_t memory() const = 0;
 
+  /// All that is needed to go on from here with the same bits, walls and parameters apart: the part of this rank.
+  virtual Bytes save() const = 0;
+
+  /// Counters over all ranks.
+  virtual Counters total() { return counters_; }
+
   /// All grains, in increasing order of ids.
   std::vector<Grain> grains() const;
 
   /// Throws InvalidPacking, naming the grain, if one has left the container other than through the orifice.
   void require_inside() const;
 
+  /// Of this rank: its spots, its grains; of sweeps, those on all ranks.
   const Counters& counters() const { return counters_; }
 
   /// Grains that left since the last call, where they were then, in increasing order of ids.

@@ -31,6 +31,12 @@ class InvalidPacking : public Error {
   using Error::Error;
 };
 
+/// A saved state is damaged, incomplete, or that of another run.
+class InvalidState : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Puts the parts of a message together, numbers with enough digits to recognise them.
 template <typename... Parts>
 std::string message(const Parts&... parts) {

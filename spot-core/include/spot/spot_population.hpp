@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "spot/bytes.hpp"
 #include "spot/spot_walk.hpp"
 
 namespace spot {
@@ -14,6 +15,11 @@ class SpotPopulation {
  public:
   /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
   SpotPopulation(const SpotParameters& parameters, const Container& container);
+
+  /// A population that goes on from what save() appended.
+  SpotPopulation(const SpotParameters& parameters, const Container& container, ByteReader& saved);
+
+  void save(Bytes& bytes) const;
 
   /// The next step of any spot up to and including `time`, or none. The spot has been moved.
   std::optional<Move> next_move(double time, const Container& container);

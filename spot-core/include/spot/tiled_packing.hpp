@@ -5,14 +5,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "spot/bytes.hpp"
+#include "spot/communicator.hpp"
 #include "spot/container.hpp"
 #include "spot/displacement.hpp"
 #include "spot/packing.hpp"
 #include "spot/parameters.hpp"
 #include "spot/point.hpp"
 #include "spot/quantum.hpp"
+#include "spot/slabs.hpp"
 #include "spot/workers.hpp"
 
 namespace spot {
@@ -21,7 +26,7 @@ namespace kernels {
 struct Kernels;
 }
 
-/// Equal spheres laid out for vector kernels and threads.
+/// Equal spheres laid out for vector kernels, threads and ranks.
 ///
 /// Positions are whole numbers of quanta of 2^-24 d, in 32 bits, from the lowest corner of the grid; they wrap around,
 /// and the cell that a grain is listed in tells where it is. Integer sums are exact, so neither cells, lists, threads
@@ -34,42 +39,67 @@ struct Kernels;
 /// brought one there. Lists have `list_capacity` places a slot.
 ///
 /// Every cell keeps an account: how many moves have reached into it, less those that sweeps have paid for.
+///
+/// Ranks own slabs of the grid's layers, and the grains listed there; of the layers next to theirs, the *border*, they
+/// hold copies. What a cell does depends on itself and its neighbours only, so neither does the number of ranks change
+/// a bit. Functions that say so are collective.
 class TiledPacking {
  public:
-  /// Grains may go down to `outlet`. Throws InvalidPacking as Packing does, and InvalidParameter if
-  /// the environment variable SPOT_INSTRUCTION_SET names kernels that cannot run here.
+  /// Collective. Grains, of which each rank brings some, may go down to `outlet`. Throws InvalidPacking as Packing
+  /// does, and InvalidParameter if the environment variable SPOT_INSTRUCTION_SET names kernels that cannot run here.
   TiledPacking(double diameter, double extent, double outlet, const std::vector<Grain>& grains,
-               const Container& container);
+               const Container& container, std::shared_ptr<Communicator> communicator = std::make_shared<Alone>());
+
+  /// Collective. A packing that goes on from a saved state, of which each rank brings all: the parts that save() gave
+  /// on every rank, of however many. Throws InvalidState if a part is damaged or missing.
+  TiledPacking(double diameter, double extent, const std::vector<Bytes>& saved, const Container& container,
+               std::shared_ptr<Communicator> communicator = std::make_shared<Alone>());
 
   /// Throws InvalidParameter unless spots of this radius are small enough, below 8 diameters.
   static void require_radius(double radius, double diameter);
 
   double diameter() const { return diameter_; }
-  std::size_t size() const { return size_; }
   double extent() const { return extent_; }
 
-  /// Calls visit(grain) for all grains, in no particular order.
+  /// Grains of this rank.
+  std::size_t size() const { return size_; }
+
+  /// The rank that owns the layer at this height.
+  int owner(double height) const { return slabs_.owner(layer(height)); }
+
+  /// The ranks, from first to last, that hold grains a move with its middle at this height may reach.
+  std::pair<int, int> reached(double height, double radius) const;
+
+  /// What is needed to go on from here, apart from walls: the part of this rank.
+  Bytes save() const;
+
+  /// Calls visit(grain) for all grains of this rank, in no particular order.
   void visit_grains(const std::function<void(const Grain&)>& visit) const;
 
-  /// Applies the moves, one after the other to every grain: as displace(), moves the grains within `radius` of a move's
-  /// middle. Each cell that a move may have reached is charged one move. Lists are up to date afterwards.
-  /// `moved`: for each move, how many grains it moved. Throws InvalidParameter unless the radius is below 8 diameters.
+  /// Collective. Applies the moves, one after the other to every grain: as displace(), moves the grains within `radius`
+  /// of a move's middle. Each cell that a move may have reached is charged one move. Lists are up to date afterwards.
+  /// `moves`: those that may reach grains of this rank, in the order of (spot, number) if there are several ranks.
+  /// `moved`: for each move, how many grains of this rank it moved. Throws InvalidParameter unless the radius is below
+  /// 8 diameters.
   void displace(const std::vector<Move>& moves, double radius, double influence, const Container& container,
                 Workers& workers, std::vector<int>& moved);
 
-  /// One sweep over the cells that are due, those charged with `due` moves or more, which pays for `due` of them; a
-  /// cell in which a grain was overlapped by more than `deepest` diameters stays due.
-  /// Returns the number of grains swept, 0 when no cell was due. Lists are up to date afterwards.
+  /// Collective. One sweep over the cells that are due, those charged with `due` moves or more, which pays for `due` of
+  /// them; a cell in which a grain was overlapped by more than `deepest` diameters stays due. Returns the number of
+  /// grains swept on all ranks, 0 when no cell was due. Lists are up to date afterwards.
   std::size_t sweep(const RelaxationParameters& parameters, double due, double deepest, const Container& container,
                     Workers& workers);
 
   /// Marks the grains near walls anew, as after the walls changed.
   void mark_near_walls(const Container& container);
 
-  /// Takes out the grains with centres below the outlet and adds them to `drained`.
+  /// Takes out this rank's grains with centres below the outlet and adds them to `drained`.
   void take_out_below(double outlet, std::vector<Grain>& drained);
 
+  /// Of a grain of this rank and any other.
   Overlap largest_overlap() const;
+
+  /// Bytes on this rank.
   std::size_t memory() const;
 
  private:
@@ -95,6 +125,11 @@ class TiledPacking {
     bool grains_below;
   };
 
+  /// A place in the layers that this rank holds.
+  struct Place {
+    std::uint32_t cell, in_cell;
+  };
+
   // Places. "From low": in deck units, from the lowest corner of the grid.
   std::array<std::int64_t, 3> quanta(const Vector3& from_low) const;
   Point wrapped(const Vector3& from_low) const;
@@ -102,32 +137,65 @@ class TiledPacking {
   Vector3 position(std::uint32_t slot) const { return low_ + from_low(points_[slot], slot / capacity_); }
   Grain grain(std::uint32_t slot) const;
   int cell_coordinate(double from_low, int axis) const;
+  int layer(double height) const { return cell_coordinate(height - low_.z(), 2); }
   std::uint32_t cell_at(const Vector3& from_low) const;
   Cell cell(std::uint32_t index) const;
-  void find_rows(const Vector3& from_low, double reach, std::vector<Row>& rows) const;
+  void find_rows(const Vector3& from_low, double reach, int first, int last, std::vector<Row>& rows) const;
   std::uint32_t cells() const { return static_cast<std::uint32_t>(account_.size()); }
+  std::uint32_t cells_in_layer() const { return static_cast<std::uint32_t>(n_[0] * n_[1]); }
 
-  void lay_out(const std::vector<Grain>& grains, const Container& container);
-  std::uint32_t place(std::uint32_t cell, std::int64_t id, const Point& point);
-  void lay_out_anew(const Container& container);
+  // What of it this rank owns.
+  int rank_layers() const { return slabs_.first(communicator_->rank() + 1) - slabs_.first(communicator_->rank()); }
+  std::uint32_t first_owned() const { return static_cast<std::uint32_t>(border_[0]) * cells_in_layer(); }
+  std::uint32_t last_owned() const {
+    return first_owned() + static_cast<std::uint32_t>(rank_layers()) * cells_in_layer();
+  }
+  bool owned(std::uint32_t cell) const { return cell >= first_owned() && cell < last_owned(); }
+
+  void set_edges();
+  void set_grid(const Vector3& low, const Vector3& high);
+  void set_slabs(const std::vector<std::int64_t>& grains_in_layer);
+  std::vector<Grain> take_own(const std::vector<Grain>& grains) const;
+  Place ensure_room(std::uint32_t cell);
+  std::uint32_t slot(const Place& place) const { return place.cell * capacity_ + place.in_cell; }
+  void occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference);
   void vacate(std::uint32_t slot);
+  void set_capacity(std::uint32_t capacity);
+  void note_change(std::uint32_t slot);
 
   // Lists.
+  void list_all(const Container& container);
   void update_lists(const Container& container);
-  bool relist(std::uint32_t slot, const Container& container);
+  void relist_wandered(const Container& container);
+  void relist(Place place, const Container& container);
   void unlist(std::uint32_t slot);
   void rename(std::uint32_t from, std::uint32_t to);
   void list(std::uint32_t slot, const Container& container);
   void find_planes(const Container& container);
   void other_contacts(const Container& container, const Vector3& centre, double reach, WallContacts& contacts) const;
-  std::size_t find_neighbours(std::uint32_t slot);
+  std::size_t find_neighbours(const Point& reference, std::uint32_t cell);
   void remove_neighbour(std::uint32_t slot, std::uint32_t neighbour);
   std::uint32_t* list_of(std::uint32_t slot) { return lists_.data() + static_cast<std::size_t>(slot) * list_capacity_; }
   void add_neighbour(std::uint32_t slot, std::uint32_t neighbour);
   void mark_near_wall(std::uint32_t slot, const Container& container);
 
+  // Other ranks.
+  void emigrate(std::uint32_t slot, int layer);
+  void exchange_migrants(const Container& container);
+  void exchange_border(const Container& container);
+  Bytes changes(int side);
+  void take_changes(const Bytes& bytes, int side, const Container& container);
+  template <typename Visit>
+  void visit_layer(std::uint32_t first_cell, const Visit& visit) const;
+  std::uint32_t first_of_border(int side, bool own) const;
+
   // Moves.
-  bool charge(const Row& row, std::int32_t path, std::int32_t limit);
+  bool lengthen(std::size_t move, std::int32_t limit);
+  void shorten(std::size_t move);
+  void charge(std::size_t move);
+  std::size_t first_row(std::size_t move) const { return move == 0 ? 0 : end_of_rows_[move - 1]; }
+  double reach_of_move(double radius) const;
+  std::size_t end_before_a_look(const std::vector<Move>& moves, std::size_t first, std::int32_t limit);
   void apply_moves(std::size_t first, std::size_t last, float radius_squared, Workers& workers,
                    std::vector<int>& moved);
 
@@ -140,6 +208,9 @@ class TiledPacking {
   void push(Point& point, const Vector3& by) const;
   void apply(const Share& share, int due, float deepest, float momentum);
 
+  /// Accounts are kept in sixteenths of a move, and a sweep can cost such parts.
+  static constexpr std::int32_t parts_of_move = 16;
+
   const kernels::Kernels* kernels_;
   double diameter_, extent_;
   Quantum quantum_;
@@ -151,6 +222,13 @@ class TiledPacking {
   std::uint32_t capacity_ = 8;
   std::uint32_t list_capacity_;
   std::size_t size_ = 0;
+
+  std::shared_ptr<Communicator> communicator_;
+  Slabs slabs_{{0}, 1};
+  std::array<int, 2> border_ = {0, 0};         // layers held of the ranks below and above: 0 or 1
+  int first_layer_ = 0;                        // of those held
+  std::array<std::vector<Place>, 2> changed_;  // what has come, gone or been listed anew where others hold copies
+  std::array<Bytes, 2> migrants_;              // grains that go to the ranks below and above
 
   std::vector<Point> points_, references_;
   std::vector<Point> momenta_;           // the last correction, as far as it is carried on
@@ -169,6 +247,7 @@ class TiledPacking {
   std::vector<Point> middles_, steps_;
   std::vector<std::vector<int>> moved_by_;  // of each worker
   std::vector<std::uint32_t> found_, wandered_cells_, due_cells_;
+  bool look_ = false;  // must lists be brought up to date before the next move?
   std::vector<Share> shares_;
 };
 

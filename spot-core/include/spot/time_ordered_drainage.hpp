@@ -20,6 +20,11 @@ class TimeOrderedDrainage : public Drainage {
   TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
                       std::shared_ptr<const Container> container, Packing packing);
 
+  /// Goes on from what save() gave. Everything else must be as it was. Throws InvalidState if it is damaged.
+  TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                      std::shared_ptr<const Container> container, double diameter, double extent, const Bytes& saved);
+
+  Bytes save() const override;
   void advance_to(double time) override;
   void replace_grains(const std::vector<Grain>& grains) override;
   void replace_container(std::shared_ptr<const Container> container) override;
@@ -31,6 +36,8 @@ class TimeOrderedDrainage : public Drainage {
   const Packing& packing() const { return packing_; }
 
  private:
+  TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                      std::shared_ptr<const Container> container, double diameter, double extent, ByteReader saved);
   void carry_out(Move move);
   int enclosed(const Move& move) const;
   bool relaxes_around(const Move& move) const;

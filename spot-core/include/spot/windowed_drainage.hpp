@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "spot/bytes.hpp"
+#include "spot/communicator.hpp"
 #include "spot/drainage.hpp"
 #include "spot/tiled_packing.hpp"
 
@@ -17,14 +19,27 @@ namespace spot {
 /// the line of centres. A cell is due when that exceeds the tolerance squared, and a sweep pays for that many moves.
 ///
 /// With a fixed volume, the weight of a spot's moves is the one that it had at the end of the window before.
+///
+/// Several ranks can share the grains and the spots: a spot belongs to the rank whose layers it is in. Once in a window
+/// its moves go to all ranks whose grains they may reach, and the numbers of grains that moved come back. Constructors,
+/// advance_to(), replace_grains() and total() are collective then.
 class WindowedDrainage : public Drainage {
  public:
-  /// `window`: in the units of the rates. Throws as TimeOrderedDrainage does, and InvalidParameter unless window and
-  /// relaxation.tolerance are positive.
+  /// `window`: in the units of the rates. `grains`: of which each rank brings some. Throws as TimeOrderedDrainage does,
+  /// and InvalidParameter unless window and relaxation.tolerance are positive.
   WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
                    double window, int threads, std::shared_ptr<const Container> container, double diameter,
-                   double extent, const std::vector<Grain>& grains);
+                   double extent, const std::vector<Grain>& grains,
+                   std::shared_ptr<Communicator> communicator = std::make_shared<Alone>());
 
+  /// Goes on from a saved state: what save() gave on every rank, of however many. Everything else must be as it was.
+  /// Throws InvalidState if it is damaged.
+  WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                   double window, int threads, std::shared_ptr<const Container> container, double diameter,
+                   double extent, const std::vector<Bytes>& saved,
+                   std::shared_ptr<Communicator> communicator = std::make_shared<Alone>());
+
+  Bytes save() const override;
   void advance_to(double time) override;
   void replace_grains(const std::vector<Grain>& grains) override;
   void replace_container(std::shared_ptr<const Container> container) override;
@@ -32,33 +47,57 @@ class WindowedDrainage : public Drainage {
   std::vector<Spot> spots() const override;
   Overlap largest_overlap() override { return packing_.largest_overlap(); }
   std::size_t memory() const override { return packing_.memory(); }
+  Counters total() override;
 
   /// Moves into a cell after which it is relaxed.
   double due() const { return due_; }
 
  private:
+  /// A spot that this rank moves.
+  struct Walker {
+    Spot spot;
+    double weight;  // of its moves
+    bool removed;
+  };
+
+  /// A move that may reach grains of this rank, or that one of its spots has made.
+  struct Turn {
+    Move move;
+    int owner;  // rank to which the spot belongs after the window
+    int moved;  // grains, as far as is known
+  };
+
+  static double moves_until_due(const SpotParameters& spots, double tolerance);
+  static double positive_window(double window);
+  bool here(const Vector3& position) const { return packing_.owner(position.z()) == communicator_->rank(); }
   void give_birth(double until);
   void walk(double until);
+  void share_turns();
+  void hand_over(std::vector<Bytes>& outgoing);
   void displace();
+  void gather_counts();
+  void settle();
   void relax();
   void drop_removed();
+  std::vector<Bytes> read(const std::vector<Bytes>& saved);
+  void keep_own_spots();
 
+  std::shared_ptr<Communicator> communicator_;
   std::unique_ptr<Workers> workers_;
   double window_;
   double due_;
-  TiledPacking packing_;
-  SpotWalk walk_;
-  std::vector<Spot> spots_;        // in order of birth
-  std::vector<double> next_step_;  // of each spot; infinite once it is removed
-  std::vector<double> weights_;    // of each spot's moves
+  // What read() sets stands before the packing.
+  std::vector<Walker> walkers_;  // in order of birth
   std::size_t removed_ = 0;
   std::int64_t born_ = 0, windows_ = 0;
-  double next_birth_;
+  double next_birth_ = 0.0;
+  TiledPacking packing_;
+  SpotWalk walk_;
 
   // Of the window at hand.
-  std::vector<Move> moves_;
-  std::vector<std::size_t> movers_;  // places in spots_
-  std::vector<int> moved_;           // grains
+  std::vector<Turn> turns_;  // in the order of (spot, number)
+  std::vector<Move> moves_;  // the same
+  std::vector<int> moved_;   // grains of this rank
 };
 
 }  // namespace spot

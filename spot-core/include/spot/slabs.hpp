@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace spot {
+
+/// Which rank owns which layers of a grid: consecutive layers, from bottom to top. Nothing that is computed depends on
+/// where slabs begin.
+class Slabs {
+ public:
+  /// Slabs with about as many grains each. Every rank owns a layer at least; if there are fewer layers than ranks, the
+  /// last ranks own none.
+  Slabs(const std::vector<std::int64_t>& grains_in_layer, int ranks);
+
+  /// The layers of a rank: from first(rank) to first(rank + 1), exclusive.
+  int first(int rank) const { return first_[static_cast<std::size_t>(rank)]; }
+  int layers() const { return first_.back(); }
+  int ranks() const { return static_cast<int>(first_.size()) - 1; }
+
+  /// The rank that owns a layer; layers beyond the grid belong to the outermost ones.
+  int owner(int layer) const;
+
+ private:
+  std::vector<int> first_;
+};
+
+}  // namespace spot

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernels.hpp"
+#include "spot/errors.hpp"
+#include "spot/tiled_packing.hpp"
+#include "wrapped_integers.hpp"
+
+namespace spot {
+
+namespace {
+
+/// How far beyond half a skin moves may bring a grain before anybody looks, in diameters: moves search for grains this
+/// much farther out.
+constexpr double leeway_in_diameters = 0.1;
+
+/// A point's state is the fourth of its coordinates, so this bounds how far a move can reach.
+constexpr double largest_radius_in_diameters = 8.0;
+
+/// No account goes beyond this, however little is relaxed.
+constexpr std::int32_t deepest_in_debt = 1 << 28;
+
+constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+
+/// Moves in their order, the same on all ranks: by spot, then by step, of which no spot takes a million.
+std::int64_t turn_of(const Move& move) { return move.spot << 20 | std::min<std::int64_t>(move.number, (1 << 20) - 1); }
+
+}  // namespace
+
+void TiledPacking::require_radius(double radius, double diameter) {
+  if (!(radius < largest_radius_in_diameters * diameter))
+    throw InvalidParameter(message("spot radius is ", radius, " but must be below ", largest_radius_in_diameters,
+                                   " grain diameters of ", diameter));
+}
+
+/// From the middle of a move to the references of the grains that it moves.
+double TiledPacking::reach_of_move(double radius) const {
+  return radius + 0.5 * skin_ + leeway_in_diameters * diameter_;
+}
+
+void TiledPacking::displace(const std::vector<Move>& moves, double radius, double influence, const Container& container,
+                            Workers& workers, std::vector<int>& moved) {
+  require_radius(radius, diameter_);
+  const double quantum = quantum_.length();
+  const auto radius_squared = static_cast<float>(square(radius / quantum));
+  const auto limit = static_cast<std::int32_t>((0.5 * skin_ + leeway_in_diameters * diameter_) / quantum);
+  const int first_layer = first_layer_ + border_[0], last_layer = first_layer + rank_layers();
+  moved.assign(moves.size(), 0);
+  middles_.clear();
+  steps_.clear();
+  rows_.clear();
+  end_of_rows_.clear();
+  for (const Move& move : moves) {
+    middles_.push_back(wrapped(move.middle - low_));
+    steps_.push_back(wrapped(-influence * move.weight * move.step));
+    find_rows(move.middle - low_, reach_of_move(radius), first_layer, last_layer, rows_);
+    end_of_rows_.push_back(rows_.size());
+  }
+  for (std::size_t first = 0;;) {
+    const std::size_t end = end_before_a_look(moves, first, limit);
+    for (std::size_t m = first; m < end; ++m) charge(m);
+    apply_moves(first, end, radius_squared, workers, moved);
+    update_lists(container);
+    first = end;
+    if (!look_) return;
+  }
+}
+
+/// The end of the moves that can be applied before grains may be too far from their references for the next, on any
+/// rank; look_ tells whether there is such a next. Their steps are added to the paths of the cells.
+std::size_t TiledPacking::end_before_a_look(const std::vector<Move>& moves, std::size_t first, std::int32_t limit) {
+  std::size_t lengthened = first;
+  bool look = false;
+  while (lengthened < moves.size() && !look) look = lengthen(lengthened++, limit);
+  const std::int64_t own = look ? turn_of(moves[lengthened - 1]) : never, turn = communicator_->least(own);
+  look_ = turn != never;
+  if (turn == own) return lengthened;
+  while (lengthened > first && turn_of(moves[lengthened - 1]) > turn) shorten(--lengthened);
+  return lengthened;
+}
+
+/// Adds a move's length to the paths of the cells that it may reach; is one of them beyond the limit?
+bool TiledPacking::lengthen(std::size_t move, std::int32_t limit) {
+  const std::int32_t length = length_of(steps_[move]);
+  bool reached = false;
+  for (std::size_t r = first_row(move); r < end_of_rows_[move]; ++r)
+    for (std::uint32_t cell = rows_[r].first; cell < rows_[r].last; ++cell) {
+      path_[cell] += length;
+      reached |= path_[cell] > limit;
+    }
+  return reached;
+}
+
+void TiledPacking::shorten(std::size_t move) {
+  for (std::size_t r = first_row(move); r < end_of_rows_[move]; ++r)
+    for (std::uint32_t cell = rows_[r].first; cell < rows_[r].last; ++cell) path_[cell] -= length_of(steps_[move]);
+}
+
+void TiledPacking::charge(std::size_t move) {
+  for (std::size_t r = first_row(move); r < end_of_rows_[move]; ++r)
+    for (std::uint32_t cell = rows_[r].first; cell < rows_[r].last; ++cell)
+      account_[cell] = std::min(account_[cell] + parts_of_move, deepest_in_debt);
+}
+
+void TiledPacking::apply_moves(std::size_t first, std::size_t last, float radius_squared, Workers& workers,
+                               std::vector<int>& moved) {
+  // A worker owns some layers of the grid, and applies all moves in them, in order.
+  const auto n = static_cast<std::uint32_t>(workers.size());
+  moved_by_.resize(n);
+  workers.run([&](int worker) {
+    const auto w = static_cast<std::uint32_t>(worker);
+    std::vector<int>& counts = moved_by_[w];
+    counts.assign(last - first, 0);
+    for (std::size_t m = first; m < last; ++m)
+      for (std::size_t r = first_row(m); r < end_of_rows_[m]; ++r) {
+        const Row& row = rows_[r];
+        if (n > 1 && row.first / cells_in_layer() % n != w) continue;
+        counts[m - first] +=
+            kernels_->displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middles_[m],
+                               radius_squared, steps_[m]);
+      }
+  });
+  for (const std::vector<int>& counts : moved_by_)
+    for (std::size_t m = first; m < last; ++m) moved[m] += counts[m - first];
+}
+
+}  // namespace spot

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+
+#include "spot/windowed_drainage.hpp"
+#include "spot_bytes.hpp"
+
+namespace spot {
+
+namespace {
+
+bool in_order(const Move& a, const Move& b) { return a.spot != b.spot ? a.spot < b.spot : a.number < b.number; }
+
+void append_move(Bytes& bytes, const Move& move) {
+  append(bytes, move.time);
+  append(bytes, move.spot);
+  append(bytes, move.middle);
+  append(bytes, move.step);
+  append(bytes, move.weight);
+  append(bytes, move.number);
+  append(bytes, move.chance);
+}
+
+Move take_move(ByteReader& reader) {
+  Move move;
+  move.time = reader.take<double>();
+  move.spot = reader.take<std::int64_t>();
+  move.middle = reader.take<Vector3>();
+  move.step = reader.take<Vector3>();
+  move.weight = reader.take<double>();
+  move.number = reader.take<std::int64_t>();
+  move.chance = reader.take<double>();
+  return move;
+}
+
+/// How many grains of a rank a move has moved.
+struct Count {
+  std::int64_t spot, number;
+  std::int64_t moved;
+};
+
+}  // namespace
+
+/// Moves go to all ranks whose grains they may reach and to the rank that their spot then belongs to; so do spots.
+void WindowedDrainage::share_turns() {
+  const int own = communicator_->rank(), ranks = communicator_->size();
+  if (ranks == 1) return;
+  std::vector<Bytes> outgoing(static_cast<std::size_t>(ranks));
+  hand_over(outgoing);
+  std::vector<Turn> kept;
+  for (const Turn& turn : turns_) {
+    const auto [first, last] = packing_.reached(turn.move.middle.z(), parameters_.radius);
+    for (int rank = 0; rank < ranks; ++rank) {
+      if ((rank < first || rank > last) && rank != turn.owner) continue;
+      if (rank == own) {
+        kept.push_back(turn);
+        continue;
+      }
+      append(outgoing[static_cast<std::size_t>(rank)], turn.owner);
+      append_move(outgoing[static_cast<std::size_t>(rank)], turn.move);
+    }
+  }
+  turns_.swap(kept);
+  for (const Bytes& bytes : communicator_->exchange(std::move(outgoing))) {
+    ByteReader reader(bytes);
+    for (auto spots = reader.at_end() ? 0 : reader.take<std::uint64_t>(); spots > 0; --spots) {
+      const Spot spot = take_spot(reader);
+      walkers_.push_back({spot, reader.take<double>(), false});
+    }
+    while (!reader.at_end()) {
+      const auto owner = reader.take<int>();
+      turns_.push_back({take_move(reader), owner, 0});
+    }
+  }
+  std::sort(walkers_.begin(), walkers_.end(), [](const Walker& a, const Walker& b) { return a.spot.id < b.spot.id; });
+  std::sort(turns_.begin(), turns_.end(), [](const Turn& a, const Turn& b) { return in_order(a.move, b.move); });
+}
+
+/// Spots that are no longer in the layers of this rank go to the one that they are with.
+void WindowedDrainage::hand_over(std::vector<Bytes>& outgoing) {
+  std::vector<Bytes> spots(outgoing.size());
+  std::vector<std::uint64_t> number(outgoing.size(), 0);
+  const auto leaves = [&](const Walker& walker) {
+    if (walker.removed || here(walker.spot.position)) return false;
+    const auto to = static_cast<std::size_t>(packing_.owner(walker.spot.position.z()));
+    append(spots[to], walker.spot);
+    append(spots[to], walker.weight);
+    ++number[to];
+    return true;
+  };
+  std::vector<Walker> staying;
+  for (const Walker& walker : walkers_)
+    if (!leaves(walker)) staying.push_back(walker);
+  walkers_.swap(staying);
+  for (std::size_t rank = 0; rank < outgoing.size(); ++rank) {
+    append(outgoing[rank], number[rank]);
+    outgoing[rank].insert(outgoing[rank].end(), spots[rank].begin(), spots[rank].end());
+  }
+}
+
+/// How many grains every move has moved in all, for the rank that its spot belongs to.
+void WindowedDrainage::gather_counts() {
+  if (communicator_->size() == 1) return;
+  std::vector<Bytes> outgoing(static_cast<std::size_t>(communicator_->size()));
+  for (const Turn& turn : turns_)
+    if (turn.owner != communicator_->rank() && turn.moved > 0)
+      append(outgoing[static_cast<std::size_t>(turn.owner)], Count{turn.move.spot, turn.move.number, turn.moved});
+  for (const Bytes& bytes : communicator_->exchange(std::move(outgoing)))
+    for (ByteReader reader(bytes); !reader.at_end();) {
+      const auto count = reader.take<Count>();
+      Move wanted;
+      wanted.spot = count.spot;
+      wanted.number = count.number;
+      std::lower_bound(turns_.begin(), turns_.end(), wanted, [](const Turn& turn, const Move& move) {
+        return in_order(turn.move, move);
+      })->moved += static_cast<int>(count.moved);
+    }
+}
+
+Counters WindowedDrainage::total() {
+  const Counters& own = counters_;
+  const auto sums = communicator_->sum({own.moves, own.grains_moved, own.drained});
+  return {sums[0], sums[1], own.sweeps, own.grains_swept, sums[2]};
+}
+
+}  // namespace spot

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// However many ranks share a drainage, and however often it is saved and goes on: the same bits.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <mutex>
+
+#include "ranks_of_threads.hpp"
+#include "scenes.hpp"
+#include "spot/slabs.hpp"
+#include "spot/time_ordered_drainage.hpp"
+#include "spot/windowed_drainage.hpp"
+
+namespace {
+
+using spot::Bytes;
+using spot::Counters;
+using spot::Grain;
+using spot::InvalidState;
+using spot::Slabs;
+using spot::Spot;
+using spot::WindowedDrainage;
+using testing::HasSubstr;
+
+constexpr double window = 0.01;
+constexpr double height = 16.0;
+
+std::vector<Grain> filling() { return scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, height}, 0.01, 2); }
+
+/// With fixed volume, momentum, and many moves in a window.
+struct Scene {
+  spot::SpotParameters spots = scenes::paper_spots();
+  spot::RelaxationParameters relaxation;
+  double window = ::window;
+  std::vector<Grain> grains = filling();
+
+  Scene() {
+    spots.step_height = 0.8;
+    spots.step_width = spot::step_width_for(1.25, spots.step_height);
+    spots.fixed_volume = 77;
+    spots.injection_rate = 120.0;
+    relaxation.tolerance = 3e-3;
+    relaxation.momentum = 0.6;
+  }
+
+  template <typename Start>
+  std::unique_ptr<WindowedDrainage> drainage(const Start& start, std::shared_ptr<spot::Communicator> ranks) const {
+    return std::make_unique<WindowedDrainage>(spots, relaxation, spot::DrainageLimits{-1.0}, window, 1,
+                                              scenes::small_silo(6.0, 4.0), 1.0, 100.0, start, std::move(ranks));
+  }
+};
+
+/// All that there is to know at the end, in order of ids.
+struct Outcome {
+  std::map<std::int64_t, Grain> grains, drained;
+  std::map<std::int64_t, Spot> spots;
+  Counters counters;
+  std::vector<Bytes> saved;
+  std::vector<std::size_t> grains_of_rank;
+};
+
+void expect_same(const Outcome& a, const Outcome& b) {
+  EXPECT_EQ(a.grains, b.grains);
+  EXPECT_EQ(a.drained, b.drained);
+  ASSERT_EQ(a.spots.size(), b.spots.size());
+  for (const auto& [id, spot] : a.spots) {
+    ASSERT_TRUE(b.spots.count(id)) << id;
+    const Spot& other = b.spots.at(id);
+    EXPECT_EQ(spot.position, other.position) << id;
+    EXPECT_EQ(spot.steps, other.steps) << id;
+    EXPECT_EQ(spot.next_step, other.next_step) << id;
+  }
+  EXPECT_EQ(a.counters.moves, b.counters.moves);
+  EXPECT_EQ(a.counters.grains_moved, b.counters.grains_moved);
+  EXPECT_EQ(a.counters.sweeps, b.counters.sweeps);
+  EXPECT_EQ(a.counters.grains_swept, b.counters.grains_swept);
+  EXPECT_EQ(a.counters.drained, b.counters.drained);
+}
+
+/// Lets the scene drain until `time` on so many ranks, from grains or a saved state.
+template <typename StartOfRank>
+Outcome drain(const Scene& scene, int ranks, double time, const StartOfRank& start_of_rank) {
+  Outcome outcome;
+  outcome.saved.resize(static_cast<std::size_t>(ranks));
+  outcome.grains_of_rank.resize(static_cast<std::size_t>(ranks));
+  std::mutex mutex;
+  scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
+    const auto rank = static_cast<std::size_t>(communicator->rank());
+    const auto drainage = scene.drainage(start_of_rank(static_cast<int>(rank)), communicator);
+    drainage->advance_to(time);
+    const Counters counters = drainage->total();
+    const std::lock_guard<std::mutex> lock(mutex);
+    drainage->visit_grains([&](const Grain& grain) {
+      EXPECT_TRUE(outcome.grains.emplace(grain.id, grain).second) << "on two ranks: " << grain.id;
+      ++outcome.grains_of_rank[rank];
+    });
+    for (const Grain& grain : drainage->take_drained()) outcome.drained.emplace(grain.id, grain);
+    for (const Spot& spot : drainage->spots()) EXPECT_TRUE(outcome.spots.emplace(spot.id, spot).second);
+    outcome.counters = counters;
+    outcome.saved[rank] = drainage->save();
+  });
+  return outcome;
+}
+
+/// The scene's grains, which the ranks bring in turn.
+Outcome drain(const Scene& scene, int ranks, double time) {
+  return drain(scene, ranks, time, [&](int rank) {
+    std::vector<Grain> part;
+    for (std::size_t i = 0; i < scene.grains.size(); ++i)
+      if (static_cast<int>(i) % ranks == rank) part.push_back(scene.grains[i]);
+    return part;
+  });
+}
+
+class RanksInvariance : public testing::TestWithParam<int> {};
+
+/// 11 layers: with 11 ranks every one has one of them, with 14 three have none.
+TEST_P(RanksInvariance, ChangeNothing) {
+  const Scene scene;
+  static const Outcome alone = drain(scene, 1, 4.0);
+  ASSERT_GT(alone.drained.size(), 20u);
+  ASSERT_GT(alone.counters.sweeps, 100);
+  const Outcome shared = drain(scene, GetParam(), 4.0);
+  expect_same(shared, alone);
+  for (int rank = 0; rank < std::min(GetParam(), 10); ++rank)
+    EXPECT_GT(shared.grains_of_rank[static_cast<std::size_t>(rank)], 0u) << rank;
+}
+
+TEST_P(RanksInvariance, ChangeNothingInLongWindowsInWhichListsMustBeMadeAnew) {
+  Scene scene;
+  scene.window = 0.4;
+  scene.spots.influence = 0.02;
+  static const Outcome alone = drain(scene, 1, 2.0);
+  expect_same(drain(scene, GetParam(), 2.0), alone);
+}
+
+TEST_P(RanksInvariance, GoOnFromAStateThatOthersHaveSaved) {
+  const Scene scene;
+  static const Outcome whole = drain(scene, 1, 4.0);
+  for (const int before : {1, 3}) {
+    const Outcome half = drain(scene, before, 2.0);
+    Outcome rest = drain(scene, GetParam(), 4.0, [&](int) { return half.saved; });
+    rest.drained.insert(half.drained.begin(), half.drained.end());
+    expect_same(rest, whole);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, RanksInvariance, testing::Values(1, 2, 3, 4, 6, 11, 14));
+
+TEST(SavedStateUnit, DamageIsNamed) {
+  const Scene scene;
+  const Outcome outcome = drain(scene, 2, 0.5);
+  const auto go_on_with = [&](const std::vector<Bytes>& saved) {
+    return scenes::text_of<InvalidState>([&] { scene.drainage(saved, std::make_shared<spot::Alone>()); });
+  };
+  EXPECT_THAT(go_on_with({}), HasSubstr("no saved state"));
+  EXPECT_THAT(go_on_with({outcome.saved[0]}), HasSubstr("has 1 parts, not 2"));
+  for (std::size_t kept = 0; kept < outcome.saved[1].size(); kept += 1 + outcome.saved[1].size() / 97) {
+    std::vector<Bytes> saved = outcome.saved;
+    saved[1].resize(kept);
+    EXPECT_THAT(go_on_with(saved), HasSubstr("ends early")) << kept << " bytes left";
+  }
+}
+
+TEST(SavedStateInvariance, TheTimeOrderedDriverGoesOnWithTheSameBits) {
+  const Scene scene;
+  const auto silo = scenes::small_silo(6.0, 4.0);
+  const spot::DrainageLimits limits{-1.0};
+  spot::RelaxationParameters relaxation;
+  relaxation.schedule = spot::RelaxationSchedule::global;
+  spot::TimeOrderedDrainage whole(scene.spots, relaxation, limits, silo, spot::Packing(1.0, 100.0, scene.grains));
+  whole.advance_to(0.7);
+  const Bytes saved = whole.save();
+  spot::TimeOrderedDrainage rest(scene.spots, relaxation, limits, silo, 1.0, 100.0, saved);
+  whole.advance_to(1.5);
+  rest.advance_to(1.5);
+  scenes::expect_identical(rest.grains(), whole.grains());
+  EXPECT_EQ(rest.counters().moves, whole.counters().moves);
+  EXPECT_EQ(rest.counters().sweeps, whole.counters().sweeps);
+  EXPECT_EQ(rest.save(), whole.save());
+}
+
+TEST(SlabsUnit, ShareLayersOutByGrains) {
+  const Slabs slabs({0, 10, 10, 10, 10, 0}, 2);
+  EXPECT_EQ(slabs.first(0), 0);
+  EXPECT_EQ(slabs.first(1), 3);
+  EXPECT_EQ(slabs.first(2), 6);
+  EXPECT_EQ(slabs.owner(-1), 0);
+  EXPECT_EQ(slabs.owner(2), 0);
+  EXPECT_EQ(slabs.owner(3), 1);
+  EXPECT_EQ(slabs.owner(99), 1);
+}
+
+TEST(SlabsUnit, EveryRankHasALayerWhileThereAreEnough) {
+  for (int layers = 1; layers < 12; ++layers)
+    for (int ranks = 1; ranks < 15; ++ranks) {
+      std::vector<std::int64_t> grains(static_cast<std::size_t>(layers), 0);
+      grains[static_cast<std::size_t>(layers / 2)] = 1000;  // all in one layer
+      const Slabs slabs(grains, ranks);
+      ASSERT_EQ(slabs.ranks(), ranks);
+      EXPECT_EQ(slabs.first(0), 0);
+      EXPECT_EQ(slabs.first(ranks), layers);
+      for (int rank = 0; rank < ranks; ++rank) {
+        const int own = slabs.first(rank + 1) - slabs.first(rank);
+        EXPECT_GE(own, rank < layers ? 1 : 0) << layers << " layers, rank " << rank << " of " << ranks;
+        for (int layer = slabs.first(rank); layer < slabs.first(rank + 1); ++layer) EXPECT_EQ(slabs.owner(layer), rank);
+      }
+    }
+}
+
+}  // namespace
