@@ -12,7 +12,10 @@
 #include "update.h"
 #include "utils.h"
 
+#include "grain_delivery.h"
+#include "mpi_communicator.h"
 #include "region_container.h"
+#include "saved_run.h"
 #include "spot/errors.hpp"
 #include "spot/time_ordered_drainage.hpp"
 #include "spot/windowed_drainage.hpp"
@@ -32,6 +35,18 @@ namespace {
 
 /// Columns of the spots in dump local.
 enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
+
+/// Of all that a grain is, to the last bit.
+std::uint64_t hash_of(const spot::Grain &grain) {
+  std::uint64_t hash = static_cast<std::uint64_t>(grain.id) * 2 + (grain.held ? 1 : 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = grain.position[axis] + 0.0;  // no negative zero
+    std::uint64_t bits;
+    std::memcpy(&bits, &at, sizeof bits);
+    hash = (hash ^ (hash >> 29) ^ bits) * 0x9e3779b97f4a7c15u;
+  }
+  return hash ^ (hash >> 32);
+}
 
 enum BoundaryKind { PERIODIC = 0, FIXED = 1 };  // as in domain.h
 
@@ -72,7 +87,11 @@ class LocalIndices {
 }  // namespace
 
 struct FixSpot::Model {
+  explicit Model(MPI_Comm world) : ranks(std::make_shared<MpiCommunicator>(world)) {}
+
   SpotCommand command;
+  std::shared_ptr<MpiCommunicator> ranks;
+  std::optional<SavedRun> saved;  // from a restart file, until the drainage goes on from it
   double diameter = 0.0;
   double drained_mass = 0.0;
   double overlap_after_run = 0.0;
@@ -81,20 +100,23 @@ struct FixSpot::Model {
   bigint windows = 0;  // done since the fix was made; the clock of the spots
   int windows_per_step = 1;
   LocalIndices local;
-  std::vector<tagint> leaving;                  // drained grains that LAMMPS still holds, in increasing order
-  std::deque<bigint> drained_after_step = {0};  // totals over the last command.average steps
-  std::vector<double> spots;                    // SpotColumn values, a row a spot
+  std::vector<tagint> leaving;                        // drained grains that this rank of LAMMPS still holds
+  bigint all_leaving = 0;                             // on all ranks
+  std::deque<std::int64_t> drained_after_step = {0};  // on all ranks, over the last command.average steps
+  std::vector<double> spots;                          // SpotColumn values, a row a spot
   std::vector<double *> rows;
 };
 
 /* ---------------------------------------------------------------------- */
 
-FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg) : Fix(instance, narg, arg), model(std::make_unique<Model>()) {
+FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg)
+    : Fix(instance, narg, arg), model(std::make_unique<Model>(world)) {
   time_integrate = 1;
   force_reneighbor = 1;
   next_reneighbor = -1;
   nevery = 1;
   dynamic_group_allow = 0;
+  restart_global = 1;
 
   vector_flag = 1;
   size_vector = 7;
@@ -129,8 +151,6 @@ void FixSpot::check_run() {
   if (update->whichflag == 2) error->all(FLERR, std::string("fix spot does not work with minimize"));
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, std::string("fix spot does not work with run_style respa"));
-  if (comm->nprocs > 1)
-    error->all(FLERR, message("fix spot relaxes in the order of time and runs on 1 MPI rank, not on ", comm->nprocs));
   if (domain->triclinic) error->all(FLERR, std::string("fix spot does not work in a triclinic box"));
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side)
@@ -163,12 +183,14 @@ void FixSpot::check_other_fixes() {
 }
 
 void FixSpot::check_grains() {
-  if (atom->natoms == 0 || atom->nlocal == 0) {
+  if (atom->natoms == 0) {
     // A silo that ran empty is no error, but without a single grain there is no diameter to start from.
     if (!model->drainage) error->all(FLERR, std::string("fix spot: there are no grains"));
     return;
   }
-  const double diameter = model->diameter > 0.0 ? model->diameter : 2.0 * atom->radius[0];
+  // One rank may hold none. NaN is no number that is least, so a diameter that is none is found below.
+  const double own = atom->nlocal > 0 ? -2.0 * atom->radius[0] : 0.0;
+  const double diameter = model->diameter > 0.0 ? model->diameter : -model->ranks->least(std::vector<double>{own})[0];
   for (int i = 0; i < atom->nlocal; ++i)
     if (!(std::abs(2.0 * atom->radius[i] - diameter) <= 1e-6 * diameter))
       error->one(FLERR, message("fix spot needs grains of one diameter, ", diameter, ": grain ", atom->tag[i], " has ",
@@ -190,12 +212,23 @@ void FixSpot::init() {
   comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
   try {
     model->command.resolve(model->diameter);
+    if (*model->command.time_ordered && comm->nprocs > 1)
+      throw spot::InvalidParameter(message("relaxation in the order of time runs on 1 MPI rank, not on ", comm->nprocs,
+                                           ": use 'accuracy normal', or 'relax tol' with a tolerance"));
     choose_window();
     check_box();
     make_container();
+    if (model->saved) require_same_settings(*model->saved, model->command.settings());
   } catch (const spot::Error &e) {
     error->all(FLERR, message("fix spot: ", e.what()));
   }
+}
+
+/// Of one rank, maybe: all others have to stop, too.
+void FixSpot::fail(const std::exception &e) const {
+  const std::string text = message("fix spot: ", e.what());
+  if (comm->nprocs > 1) error->one(FLERR, text);
+  error->all(FLERR, text);
 }
 
 /// LAMMPS drops what is outside its box, so the walls and the outlet must not be.
@@ -253,36 +286,68 @@ std::vector<spot::Grain> FixSpot::grains_of_lammps() const {
   return grains;
 }
 
+/// No coordinate is ever larger.
+double FixSpot::extent() const {
+  double extent = std::abs(*model->command.outlet) + model->diameter;
+  for (int axis = 0; axis < 3; ++axis)
+    extent = std::max({extent, std::abs(domain->boxlo[axis]), std::abs(domain->boxhi[axis])});
+  return extent;
+}
+
 void FixSpot::make_drainage(const std::vector<spot::Grain> &grains) {
   const SpotCommand &command = model->command;
   const spot::DrainageLimits limits{*command.outlet, command.largest_overlap};
-  double extent = std::abs(*command.outlet) + model->diameter;
-  for (int axis = 0; axis < 3; ++axis)
-    extent = std::max({extent, std::abs(domain->boxlo[axis]), std::abs(domain->boxhi[axis])});
   if (*command.time_ordered)
     model->drainage = std::make_unique<spot::TimeOrderedDrainage>(
-        command.spots, command.relaxation, limits, model->container, spot::Packing(model->diameter, extent, grains));
+        command.spots, command.relaxation, limits, model->container, spot::Packing(model->diameter, extent(), grains));
   else
-    model->drainage =
-        std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits, *command.window,
-                                                 command.threads, model->container, model->diameter, extent, grains);
+    model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits,
+                                                               *command.window, command.threads, model->container,
+                                                               model->diameter, extent(), grains, model->ranks);
+}
+
+void FixSpot::go_on_from_restart(double extent) {
+  const SpotCommand &command = model->command;
+  const spot::DrainageLimits limits{*command.outlet, command.largest_overlap};
+  const SavedRun run = std::move(*model->saved);
+  model->saved.reset();
+  if (*command.time_ordered)
+    model->drainage = std::make_unique<spot::TimeOrderedDrainage>(
+        command.spots, command.relaxation, limits, model->container, model->diameter, extent, run.parts.at(0));
+  else
+    model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits,
+                                                               *command.window, command.threads, model->container,
+                                                               model->diameter, extent, run.parts, model->ranks);
 }
 
 void FixSpot::setup(int) {
   try {
-    const std::vector<spot::Grain> grains = grains_of_lammps();
-    if (!model->drainage) {
-      make_drainage(grains);
-    } else {
-      if (model->command.uses_region()) model->drainage->replace_container(model->container);
-      if (grains != model->drainage->grains()) model->drainage->replace_grains(grains);
-      model->drainage->require_inside();
-    }
+    if (model->saved)
+      go_on_from_restart(extent());
+    else if (!model->drainage)
+      make_drainage(grains_of_lammps());
+    if (model->command.uses_region()) model->drainage->replace_container(model->container);
+    if (!grains_are_as_they_were()) model->drainage->replace_grains(grains_of_lammps());
+    model->drainage->require_inside();
+    write_grains({});
   } catch (const spot::Error &e) {
-    error->all(FLERR, message("fix spot: ", e.what()));
+    fail(e);
   }
-  write_grains();
   list_spots();
+}
+
+/// Does LAMMPS still have the grains, on whichever ranks, where the fix has left them? Sums of hashes tell.
+bool FixSpot::grains_are_as_they_were() const {
+  std::vector<std::int64_t> differences = {0, 0, 0};
+  const auto count = [&](const spot::Grain &grain, int sign) {
+    const std::uint64_t hash = hash_of(grain);
+    differences[0] += sign;
+    differences[1] += sign * static_cast<std::int64_t>(hash & 0xffffffffu);
+    differences[2] += sign * static_cast<std::int64_t>(hash >> 32);
+  };
+  for (const spot::Grain &grain : grains_of_lammps()) count(grain, 1);
+  model->drainage->visit_grains([&](const spot::Grain &grain) { count(grain, -1); });
+  return model->ranks->sum(differences) == std::vector<std::int64_t>{0, 0, 0};
 }
 
 /// Index of a grain in LAMMPS' arrays, which no longer hold it if it was outside the simulation box.
@@ -293,17 +358,36 @@ int FixSpot::local_index(std::int64_t grain) const {
   return index;
 }
 
-/// Positions go back to LAMMPS; the velocity is the displacement over the step divided by the timestep.
-void FixSpot::write_grains() {
+/// Positions go back to LAMMPS, and so does who has left; the velocity is the displacement over the step divided by the
+/// timestep.
+void FixSpot::write_grains(const std::vector<spot::Grain> &drained) {
   model->local.assign(atom->tag, atom->nlocal);
   const double per_time = 1.0 / update->dt;
-  model->drainage->visit_grains([&](const spot::Grain &grain) {
-    const int i = local_index(grain.id);
+  const auto put = [&](std::int64_t grain, const double *position) {
+    const int i = local_index(grain);
     for (int axis = 0; axis < 3; ++axis) {
-      atom->v[i][axis] = (grain.position[axis] - atom->x[i][axis]) * per_time;
-      atom->x[i][axis] = grain.position[axis];
+      atom->v[i][axis] = (position[axis] - atom->x[i][axis]) * per_time;
+      atom->x[i][axis] = position[axis];
     }
-  });
+  };
+  if (comm->nprocs == 1) {
+    model->drainage->visit_grains([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); });
+    for (const spot::Grain &grain : drained) model->leaving.push_back(static_cast<tagint>(grain.id));
+    return;
+  }
+  std::vector<Delivery> deliveries;
+  const auto add = [&](const spot::Grain &grain, bool left) {
+    const spot::Vector3 &at = grain.position;
+    deliveries.push_back({grain.id, {at.x(), at.y(), at.z()}, left});
+  };
+  model->drainage->visit_grains([&](const spot::Grain &grain) { add(grain, false); });
+  for (const spot::Grain &grain : drained) add(grain, true);
+  for (const Delivery &delivery : deliver(deliveries, {atom->tag, atom->tag + atom->nlocal}, *model->ranks)) {
+    if (delivery.left)
+      model->leaving.push_back(static_cast<tagint>(delivery.id));
+    else
+      put(delivery.id, delivery.position);
+  }
 }
 
 /* ----------------------------------------------------------------------
@@ -317,26 +401,24 @@ void FixSpot::initial_integrate(int) {
     model->windows += model->windows_per_step;
     drainage.advance_to(static_cast<double>(model->windows) * *model->command.window);
     drainage.require_inside();
+    write_grains(drainage.take_drained());
   } catch (const spot::Error &e) {
-    error->one(FLERR, message("fix spot: ", e.what()));
+    fail(e);
   }
-  for (const spot::Grain &grain : drainage.take_drained()) model->leaving.push_back(static_cast<tagint>(grain.id));
-  write_grains();
   for (const tagint grain : model->leaving) model->drained_mass += atom->rmass[local_index(grain)];
-  if (!model->leaving.empty()) next_reneighbor = update->ntimestep;
+  model->all_leaving = model->ranks->sum(static_cast<std::int64_t>(model->leaving.size()));
+  if (model->all_leaving > 0) next_reneighbor = update->ntimestep;
 
-  model->drained_after_step.push_back(drainage.counters().drained);
-  if (model->drained_after_step.size() > static_cast<std::size_t>(model->command.average) + 1)
-    model->drained_after_step.pop_front();
+  auto &totals = model->drained_after_step;
+  totals.push_back(totals.back() + model->all_leaving);
+  if (totals.size() > static_cast<std::size_t>(model->command.average) + 1) totals.pop_front();
 }
 
 /// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this.
 void FixSpot::pre_exchange() {
-  if (model->leaving.empty()) return;
-  for (const tagint grain : model->leaving) {
-    atom->x[local_index(grain)][2] = domain->boxlo[2] - model->diameter;
-  }
-  atom->natoms -= static_cast<bigint>(model->leaving.size());
+  for (const tagint grain : model->leaving) atom->x[local_index(grain)][2] = domain->boxlo[2] - model->diameter;
+  atom->natoms -= model->all_leaving;
+  model->all_leaving = 0;
   model->leaving.clear();
 }
 
@@ -369,35 +451,71 @@ void FixSpot::post_run() {
   if (model->drainage) model->overlap_after_run = largest_overlap();
 }
 
+/// Collective.
 double FixSpot::compute_vector(int which) {
   if (!model->drainage) return 0.0;
-  const spot::Counters &counters = model->drainage->counters();
   switch (which) {
     case 0:
-      return static_cast<double>(model->drainage->spots().size());
+      return static_cast<double>(model->ranks->sum(static_cast<std::int64_t>(model->drainage->spots().size())));
     case 1:
-      return static_cast<double>(counters.moves);
+      return static_cast<double>(model->drainage->total().moves);
     case 2:
-      return static_cast<double>(counters.drained);
-    case 3:
-      return model->drained_mass;
+      return static_cast<double>(model->drainage->total().drained);
+    case 3: {
+      double mass = 0.0;
+      MPI_Allreduce(&model->drained_mass, &mass, 1, MPI_DOUBLE, MPI_SUM, world);
+      return mass;
+    }
     case 4:
       return mean_outflow();
     case 5:
       return update->whichflag ? largest_overlap() : model->overlap_after_run;
     default:
-      return static_cast<double>(counters.sweeps);
+      return static_cast<double>(model->drainage->total().sweeps);
   }
 }
 
 /// In distance units.
-double FixSpot::largest_overlap() const { return model->drainage->largest_overlap().depth * model->diameter; }
+double FixSpot::largest_overlap() const {
+  return -model->ranks->least(std::vector<double>{-model->drainage->largest_overlap().depth})[0] * model->diameter;
+}
 
 /// Grains a time, over the last `average` steps (fewer when no more were done).
 double FixSpot::mean_outflow() const {
   const auto &totals = model->drained_after_step;
   if (totals.size() < 2) return 0.0;
   return static_cast<double>(totals.back() - totals.front()) / (static_cast<double>(totals.size() - 1) * update->dt);
+}
+
+/* ----------------------------------------------------------------------
+   restart files
+------------------------------------------------------------------------- */
+
+void FixSpot::write_restart(FILE *file) {
+  SavedRun run;
+  MPI_Allreduce(&model->drained_mass, &run.drained_mass, 1, MPI_DOUBLE, MPI_SUM, world);
+  run.windows = model->windows;
+  run.drained_after_step.assign(model->drained_after_step.begin(), model->drained_after_step.end());
+  try {
+    if (!model->drainage)
+      throw spot::InvalidState("there is nothing to write into a restart file before the first run");
+    run.settings = model->command.settings();
+    write_run(run, model->drainage->save(), file, *model->ranks);
+  } catch (const spot::Error &e) {
+    fail(e);
+  }
+}
+
+void FixSpot::restart(char *bytes) {
+  try {
+    model->saved = read_run(bytes);
+  } catch (const spot::Error &e) {
+    fail(e);
+  }
+  model->windows = model->saved->windows;
+  model->drained_mass = comm->me == 0 ? model->saved->drained_mass : 0.0;
+  const auto &totals = model->saved->drained_after_step;
+  model->drained_after_step.assign(totals.begin(), totals.end());
 }
 
 double FixSpot::memory_usage() {

@@ -11,6 +11,7 @@ FixStyle(spot,FixSpot);
 #include "fix.h"
 
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <vector>
 
@@ -33,6 +34,8 @@ class FixSpot : public Fix {
   void pre_exchange() override;
   void end_of_step() override;
   void post_run() override;
+  void write_restart(FILE *) override;
+  void restart(char *) override;
   double compute_vector(int) override;
   double memory_usage() override;
 
@@ -46,13 +49,17 @@ class FixSpot : public Fix {
   void check_other_fixes();
   void make_container();
   void make_drainage(const std::vector<spot::Grain> &);
+  void go_on_from_restart(double);
+  double extent() const;
+  bool grains_are_as_they_were() const;
   void check_box();
   std::vector<spot::Grain> grains_of_lammps() const;
-  void write_grains();
+  void write_grains(const std::vector<spot::Grain> &);
   int local_index(std::int64_t) const;
   void list_spots();
   double largest_overlap() const;
   double mean_outflow() const;
+  [[noreturn]] void fail(const std::exception &) const;
 };
 
 }  // namespace LAMMPS_NS

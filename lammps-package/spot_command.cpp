@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <sstream>
 
 #include "spot/errors.hpp"
 
@@ -72,6 +73,15 @@ class Words {
   std::size_t next_ = 0;
   std::string keyword_;
 };
+
+/// As message(), with all digits that tell two numbers apart.
+template <typename... Parts>
+std::string precise(const Parts&... parts) {
+  std::ostringstream out;
+  out.precision(17);
+  (out << ... << parts);
+  return out.str();
+}
 
 void set_walls(SpotCommand& command, decltype(SpotCommand::walls) walls) {
   if (!std::holds_alternative<std::monostate>(command.walls))
@@ -243,4 +253,41 @@ void SpotCommand::resolve(double diameter) {
   side_buffer = side_buffer.value_or(diameter);
   base_buffer = base_buffer.value_or(diameter);
   outlet = outlet.value_or(orifice->centre.z());
+}
+
+namespace {
+
+std::string text_of_walls(const decltype(SpotCommand::walls)& walls) {
+  if (const auto* box = std::get_if<BoxWalls>(&walls))
+    return precise("box ", box->x_low, ' ', box->x_high, ' ', box->y_low, ' ', box->y_high);
+  if (const auto* cylinder = std::get_if<CylinderWalls>(&walls))
+    return precise("cylinder ", cylinder->x, ' ', cylinder->y, ' ', cylinder->radius);
+  return "region " + std::get<RegionWalls>(walls).id;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
+  const spot::Vector3& centre = orifice->centre;
+  return {{"walls", text_of_walls(walls)},
+          {"orifice", precise(centre.x(), ' ', centre.y(), ' ', centre.z(), ' ', orifice->radius)},
+          {"radius", precise(spots.radius)},
+          {"influence", precise(spots.influence)},
+          {"width of a step", precise(spots.step_width)},
+          {"dz", precise(spots.step_height)},
+          {"speed", precise(spots.speed)},
+          {"injection", precise(spots.injection_rate)},
+          {"volume", precise(spots.fixed_volume)},
+          {"steps", spots.together ? "together" : "poisson"},
+          {"seed", precise(spots.seed)},
+          {"outlet", precise(*outlet)},
+          {"buffer", precise(*side_buffer, ' ', *base_buffer)},
+          {"window", *time_ordered ? "any" : precise(*window)},
+          {"driver", *time_ordered ? "time-ordered" : "windowed"},
+          {"relax tol", *time_ordered ? "none" : precise(relaxation.tolerance)},
+          {"schedule of the relaxation", precise(static_cast<int>(relaxation.schedule), ' ', relaxation.every)},
+          {"alpha", precise(relaxation.alpha)},
+          {"strength", relaxation.strength == spot::RelaxationStrength::half_each ? "half" : "full"},
+          {"momentum", precise(relaxation.momentum)},
+          {"shell", precise(relaxation.shell)}};
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -57,6 +58,9 @@ struct SpotCommand {
   /// The parameters of an accuracy.
   static double step_height_in_diameters(Accuracy accuracy);
   static spot::RelaxationParameters relaxation_of(Accuracy accuracy);
+
+  /// All that decides where grains and spots go, as text, once it is resolved. `threads` and `average` are not in it.
+  std::vector<std::pair<std::string, std::string>> settings() const;
 
   bool uses_region() const { return std::holds_alternative<RegionWalls>(walls); }
 };

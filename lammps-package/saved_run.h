@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#ifndef SPOT_SAVED_RUN_H
+#define SPOT_SAVED_RUN_H
+
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "spot/communicator.hpp"
+
+/// What the fix puts into a restart file of LAMMPS.
+struct SavedRun {
+  std::vector<std::pair<std::string, std::string>> settings;  // what must be the same when the run goes on
+  std::int64_t windows = 0;
+  double drained_mass = 0.0;
+  std::vector<std::int64_t> drained_after_step;
+  std::vector<spot::Bytes> parts;  // what spot::Drainage::save() gave on every rank
+};
+
+/// Collective. Writes a run, of whose parts every rank has one; `file` is open on rank 0. The parts of other ranks come
+/// to rank 0 one after the other. Throws spot::InvalidState if they are too many bytes for a restart file of LAMMPS, or
+/// cannot be written.
+void write_run(const SavedRun &run, const spot::Bytes &own_part, std::FILE *file, spot::Communicator &communicator);
+
+/// Reads what write_run() wrote after its length, which LAMMPS reads by itself. Throws spot::InvalidState if it is
+/// damaged or of another version.
+SavedRun read_run(const char *bytes);
+
+/// Throws spot::InvalidState that names the first setting which is not what it was.
+void require_same_settings(const SavedRun &run, const std::vector<std::pair<std::string, std::string>> &settings);
+
+#endif
