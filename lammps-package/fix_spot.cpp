@@ -36,11 +36,11 @@ namespace {
 /// Columns of the spots in dump local.
 enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
 
-/// Of all that a grain is, to the last bit.
-std::uint64_t hash_of(const spot::Grain &grain) {
+/// Of all that a grain is, to the quantum: LAMMPS rounds positions when it balances its ranks.
+std::uint64_t hash_of(const spot::Grain &grain, const spot::Quantum &quantum) {
   std::uint64_t hash = static_cast<std::uint64_t>(grain.id) * 2 + (grain.held ? 1 : 0);
   for (int axis = 0; axis < 3; ++axis) {
-    const double at = grain.position[axis] + 0.0;  // no negative zero
+    const double at = quantum.snap(grain.position[axis]) + 0.0;  // no negative zero
     std::uint64_t bits;
     std::memcpy(&bits, &at, sizeof bits);
     hash = (hash ^ (hash >> 29) ^ bits) * 0x9e3779b97f4a7c15u;
@@ -100,8 +100,7 @@ struct FixSpot::Model {
   bigint windows = 0;  // done since the fix was made; the clock of the spots
   int windows_per_step = 1;
   LocalIndices local;
-  std::vector<tagint> leaving;                        // drained grains that this rank of LAMMPS still holds
-  bigint all_leaving = 0;                             // on all ranks
+  std::vector<tagint> leaving;                        // drained grains that LAMMPS still holds, on whichever rank
   std::deque<std::int64_t> drained_after_step = {0};  // on all ranks, over the last command.average steps
   std::vector<double> spots;                          // SpotColumn values, a row a spot
   std::vector<double *> rows;
@@ -329,7 +328,7 @@ void FixSpot::setup(int) {
     if (model->command.uses_region()) model->drainage->replace_container(model->container);
     if (!grains_are_as_they_were()) model->drainage->replace_grains(grains_of_lammps());
     model->drainage->require_inside();
-    write_grains({});
+    write_grains({}, false);
   } catch (const spot::Error &e) {
     fail(e);
   }
@@ -340,7 +339,7 @@ void FixSpot::setup(int) {
 bool FixSpot::grains_are_as_they_were() const {
   std::vector<std::int64_t> differences = {0, 0, 0};
   const auto count = [&](const spot::Grain &grain, int sign) {
-    const std::uint64_t hash = hash_of(grain);
+    const std::uint64_t hash = hash_of(grain, model->drainage->quantum());
     differences[0] += sign;
     differences[1] += sign * static_cast<std::int64_t>(hash & 0xffffffffu);
     differences[2] += sign * static_cast<std::int64_t>(hash >> 32);
@@ -358,15 +357,16 @@ int FixSpot::local_index(std::int64_t grain) const {
   return index;
 }
 
-/// Positions go back to LAMMPS, and so does who has left; the velocity is the displacement over the step divided by the
-/// timestep.
-void FixSpot::write_grains(const std::vector<spot::Grain> &drained) {
+/// Positions go back to LAMMPS, and so does who has left; after a step the velocity is the displacement over it divided
+/// by the timestep.
+void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_step) {
   model->local.assign(atom->tag, atom->nlocal);
   const double per_time = 1.0 / update->dt;
+  const spot::Quantum &quantum = model->drainage->quantum();
   const auto put = [&](std::int64_t grain, const double *position) {
     const int i = local_index(grain);
     for (int axis = 0; axis < 3; ++axis) {
-      atom->v[i][axis] = (position[axis] - atom->x[i][axis]) * per_time;
+      if (after_step) atom->v[i][axis] = (position[axis] - quantum.snap(atom->x[i][axis])) * per_time;
       atom->x[i][axis] = position[axis];
     }
   };
@@ -401,28 +401,46 @@ void FixSpot::initial_integrate(int) {
     model->windows += model->windows_per_step;
     drainage.advance_to(static_cast<double>(model->windows) * *model->command.window);
     drainage.require_inside();
-    write_grains(drainage.take_drained());
+    write_grains(drainage.take_drained(), true);
   } catch (const spot::Error &e) {
     fail(e);
   }
   for (const tagint grain : model->leaving) model->drained_mass += atom->rmass[local_index(grain)];
-  model->all_leaving = model->ranks->sum(static_cast<std::int64_t>(model->leaving.size()));
-  if (model->all_leaving > 0) next_reneighbor = update->ntimestep;
+  tell_all_who_leaves();
+  if (!model->leaving.empty()) next_reneighbor = update->ntimestep;
 
   auto &totals = model->drained_after_step;
-  totals.push_back(totals.back() + model->all_leaving);
+  totals.push_back(totals.back() + static_cast<std::int64_t>(model->leaving.size()));
   if (totals.size() > static_cast<std::size_t>(model->command.average) + 1) totals.pop_front();
+}
+
+/// Another fix may hand grains to other ranks before LAMMPS asks for those that leave.
+void FixSpot::tell_all_who_leaves() {
+  if (comm->nprocs == 1) return;
+  spot::Bytes own;
+  spot::append(own, model->leaving);
+  model->leaving.clear();
+  for (const spot::Bytes &bytes : model->ranks->exchange(std::vector<spot::Bytes>(comm->nprocs, own)))
+    for (const tagint grain : spot::ByteReader(bytes).take_all<tagint>()) model->leaving.push_back(grain);
 }
 
 /// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this.
 void FixSpot::pre_exchange() {
-  for (const tagint grain : model->leaving) atom->x[local_index(grain)][2] = domain->boxlo[2] - model->diameter;
-  atom->natoms -= model->all_leaving;
-  model->all_leaving = 0;
+  if (model->leaving.empty()) return;
+  model->local.assign(atom->tag, atom->nlocal);
+  for (const tagint grain : model->leaving)
+    if (const int i = model->local[grain]; i >= 0) atom->x[i][2] = domain->boxlo[2] - model->diameter;
+  atom->natoms -= static_cast<bigint>(model->leaving.size());
   model->leaving.clear();
 }
 
-void FixSpot::end_of_step() { list_spots(); }
+void FixSpot::end_of_step() {
+  // fix balance has rounded positions when it looked at them in units of the box.
+  if (comm->nprocs > 1)
+    for (int i = 0; i < atom->nlocal; ++i)
+      for (int axis = 0; axis < 3; ++axis) atom->x[i][axis] = model->drainage->quantum().snap(atom->x[i][axis]);
+  list_spots();
+}
 
 void FixSpot::list_spots() {
   const std::vector<spot::Spot> spots = model->drainage->spots();

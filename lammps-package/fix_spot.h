@@ -54,7 +54,8 @@ class FixSpot : public Fix {
   bool grains_are_as_they_were() const;
   void check_box();
   std::vector<spot::Grain> grains_of_lammps() const;
-  void write_grains(const std::vector<spot::Grain> &);
+  void write_grains(const std::vector<spot::Grain> &, bool);
+  void tell_all_who_leaves();
   int local_index(std::int64_t) const;
   void list_spots();
   double largest_overlap() const;

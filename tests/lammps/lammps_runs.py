@@ -25,6 +25,8 @@ needs_distribution = pytest.mark.skipif(DISTRIBUTION is None or not os.path.exis
 programs = pytest.mark.parametrize("program", [pytest.param(FRONT_END, id="front-end"),
                                                pytest.param(DISTRIBUTION, id="plugin", marks=needs_distribution)])
 
+needs_mpirun = pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
+
 HALF_WIDTH, HALF_DEPTH, HEIGHT, ORIFICE = 5.0, 4.0, 10.0, 3.0
 BOX = (-HALF_WIDTH, HALF_WIDTH, -HALF_DEPTH, HALF_DEPTH, -4.0, 20.0)
 WALLS = f"box {-HALF_WIDTH} {HALF_WIDTH} {-HALF_DEPTH} {HALF_DEPTH}"
@@ -77,6 +79,11 @@ dump_modify grains sort id format float %.17g
 """
 
 
+def on_ranks(ranks):
+    """What starts a program on so many MPI ranks, more than there are cores if need be."""
+    return ["mpirun", "--oversubscribe", "-np", str(ranks)] + (["--allow-run-as-root"] if os.geteuid() == 0 else [])
+
+
 def run(text, folder, program=FRONT_END, launcher=(), **environment):
     """Run a deck in `folder`, which gets the small silo's packing.data unless it has one; the finished process."""
     if not (folder / "packing.data").exists():
@@ -93,10 +100,10 @@ def run_ok(text, folder, **options):
     return done.stdout
 
 
-def drain(folder, program=FRONT_END, **parts):
+def drain(folder, program=FRONT_END, launcher=(), **parts):
     """The dump, as bytes, of a deck made of these parts."""
     folder.mkdir(exist_ok=True)
-    run_ok(deck(**parts), folder, program=program)
+    run_ok(deck(**parts), folder, program=program, launcher=launcher)
     return (folder / "grains.dump").read_bytes()
 
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Every mistake ends in one error that names the offending word and says what is allowed."""
 
-import os
 import shutil
 
+import numpy as np
 import pytest
 
 from lammps_runs import (DISTRIBUTION, FIX, FRONT_END, LOAD_SPOT, OPENING, PLUGIN, RATES, WALLS, deck, error_of, lattice,
-                         needs_distribution, programs, run, run_ok, write_data)
+                         needs_distribution, needs_mpirun, on_ranks, programs, run, run_ok, write_data)
 
 COMPLETE = {"walls": WALLS, "orifice": OPENING, "influence": "influence 1e-2", "speed": "speed 3.2",
             "injection": "injection 100"}
@@ -196,11 +196,20 @@ def test_minimize(tmp_path):
     has(error_of(text, tmp_path), "does not work with minimize")
 
 
-@pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
+@needs_mpirun
 @programs
-def test_two_ranks(tmp_path, program):
-    launcher = ["mpirun", "--oversubscribe", "-np", "2"] + (["--allow-run-as-root"] if os.geteuid() == 0 else [])
-    has(error_of(deck(fix()), tmp_path, program=program, launcher=launcher), "1 MPI rank, not on 2")
+def test_order_of_time_on_two_ranks(tmp_path, program):
+    has(error_of(deck(fix("accuracy exact")), tmp_path, program=program, launcher=on_ranks(2)),
+        "1 MPI rank, not on 2", "relax tol")
+
+
+@needs_mpirun
+def test_error_on_one_rank_ends_all(tmp_path):
+    """A grain outside the walls is known to the rank that owns its layer only."""
+    write_data(tmp_path / "packing.data", np.append(lattice(), [[4.0, 3.0, -0.3]], axis=0))
+    said = run(deck(fix()), tmp_path, launcher=on_ranks(3))
+    assert said.returncode != 0
+    has(said.stdout + said.stderr, "is outside the container")
 
 
 @needs_distribution

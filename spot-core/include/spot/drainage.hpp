@@ -10,6 +10,7 @@
 #include "spot/container.hpp"
 #include "spot/packing.hpp"
 #include "spot/parameters.hpp"
+#include "spot/quantum.hpp"
 #include "spot/spot_walk.hpp"
 
 namespace spot {
@@ -51,6 +52,9 @@ class Drainage {
 
   /// Calls visit(grain) for all grains, in no particular order.
   virtual void visit_grains(const std::function<void(const Grain&)>& visit) const = 0;
+
+  /// All coordinates of grains are multiples of it.
+  virtual const Quantum& quantum() const = 0;
 
   virtual std::vector<Spot> spots() const = 0;
   virtual Overlap largest_overlap() = 0;

@@ -60,6 +60,7 @@ class TiledPacking {
 
   double diameter() const { return diameter_; }
   double extent() const { return extent_; }
+  const Quantum& quantum() const { return quantum_; }
 
   /// Grains of this rank.
   std::size_t size() const { return size_; }

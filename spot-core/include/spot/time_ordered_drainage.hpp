@@ -29,6 +29,7 @@ class TimeOrderedDrainage : public Drainage {
   void replace_grains(const std::vector<Grain>& grains) override;
   void replace_container(std::shared_ptr<const Container> container) override;
   void visit_grains(const std::function<void(const Grain&)>& visit) const override;
+  const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override { return population_.spots(); }
   Overlap largest_overlap() override;
   std::size_t memory() const override { return packing_.memory(); }

@@ -44,6 +44,7 @@ class WindowedDrainage : public Drainage {
   void replace_grains(const std::vector<Grain>& grains) override;
   void replace_container(std::shared_ptr<const Container> container) override;
   void visit_grains(const std::function<void(const Grain&)>& visit) const override { packing_.visit_grains(visit); }
+  const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override;
   Overlap largest_overlap() override { return packing_.largest_overlap(); }
   std::size_t memory() const override { return packing_.memory(); }
