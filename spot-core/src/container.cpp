@@ -96,6 +96,11 @@ Vector3 BasePlate::reflect_spot(double buffer, const Vector3& target) const {
   return orifice_.keep_within(std::max(0.0, orifice_.radius - rim_clearance), target);
 }
 
+bool BasePlate::may_have_left_to(const Vector3& centre) const {
+  const double from_axis = length(centre.x() - orifice_.centre.x(), centre.y() - orifice_.centre.y());
+  return from_axis <= orifice_.radius + std::max(0.0, orifice_.centre.z() - centre.z());
+}
+
 WalledContainer::WalledContainer(const Orifice& orifice) : orifice_(orifice) {
   if (!(orifice.radius > 0.0) || !std::isfinite(orifice.radius) || !orifice.centre.allFinite())
     throw InvalidContainer(message("orifice radius is ", orifice.radius, " but must be positive and finite"));
@@ -112,6 +117,10 @@ bool WalledContainer::contains(const Vector3& centre) const {
   return std::all_of(walls_.begin(), walls_.end(),
                      [&](const Bounded& b) { return b.wall->nearest(centre).distance >= 0.0; }) &&
          centre.z() >= orifice_.centre.z();
+}
+
+bool WalledContainer::may_have_left_to(const Vector3& centre) const {
+  return std::all_of(walls_.begin(), walls_.end(), [&](const Bounded& b) { return b.wall->may_have_left_to(centre); });
 }
 
 void WalledContainer::contacts(const Vector3& centre, double reach, WallContacts& contacts) const {

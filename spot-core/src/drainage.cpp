@@ -2,8 +2,10 @@
 #include "spot/drainage.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "spot/displacement.hpp"
 #include "spot/errors.hpp"
 
 namespace spot {
@@ -11,6 +13,36 @@ namespace spot {
 namespace {
 
 bool by_id(const Grain& a, const Grain& b) { return a.id < b.id; }
+
+/// A grain at rest on the base has its centre this far from it, in diameters; no move may carry one through.
+constexpr double longest_displacement = 0.5;
+
+/// Steps of spots, in diameters: longer than any spot is wide, or too short to get anywhere.
+constexpr double longest_step = 16.0, shortest_step = 1e-6;
+
+/// Spots born while one climbs a diameter. The fitted parameters have 120.
+constexpr double most_births = 1e7;
+
+void require_steps(const SpotParameters& spots, double diameter) {
+  const double longest = std::max(spots.step_width, spots.step_height) / diameter;
+  if (!(longest <= longest_step))
+    throw InvalidParameter(
+        message("steps of spots are ", longest, " diameters long but must be at most ", longest_step));
+  if (!(spots.step_height >= shortest_step * diameter))
+    throw InvalidParameter(message("spot step height is ", spots.step_height / diameter,
+                                   " diameters but must be at least ", shortest_step));
+  const double births = spots.injection_rate * (diameter / spots.speed);
+  if (!(births <= most_births))
+    throw InvalidParameter(message("spot injection rate is ", spots.injection_rate, ": ", births,
+                                   " births while a spot climbs one diameter, but at most ", most_births,
+                                   " are allowed"));
+  const double step = std::sqrt(spots.step_width * spots.step_width + spots.step_height * spots.step_height);
+  const double displacement = spots.influence * largest_weight(spots) * (step / diameter);
+  if (!(displacement <= longest_displacement))
+    throw InvalidParameter(message("a step of a spot displaces grains by up to ", displacement,
+                                   " diameters, but at most ", longest_displacement,
+                                   " is allowed: less influence or volume, or shorter steps"));
+}
 
 }  // namespace
 
@@ -23,6 +55,7 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
       diameter_(diameter) {
   parameters_.validate();
   relaxation_parameters_.validate();
+  require_steps(parameters_, diameter);
   container_->require_entrance(spots.radius);
   const double base = container_->orifice().centre.z();
   // A newborn spot is 2 R_s tall, and the middle of its first step is half a step higher.
@@ -30,6 +63,9 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
   if (!(limits.outlet > lowest_reached && limits.outlet <= base))
     throw InvalidParameter(message("outlet is at z = ", limits.outlet, " but must be above ", lowest_reached,
                                    ", the reach of newborn spots, and not above the orifice, ", base));
+  if (!(limits.largest_overlap_in_flow > 0.0))
+    throw InvalidParameter(
+        message("largest overlap in flow is ", limits.largest_overlap_in_flow, " diameters but must be positive"));
   if (!(limits.largest_overlap > 0.0))
     throw InvalidParameter(
         message("largest overlap at the start is ", limits.largest_overlap, " diameters but must be positive"));
@@ -66,6 +102,23 @@ void Drainage::require_inside(double lowest, double reach) const {
 void Drainage::require_inside() const {
   // Falling grains may spread below the plate, and those at the edge of a relaxed region leave one move later.
   require_inside(-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+}
+
+void Drainage::require_no_collapse(const Overlap& largest) const {
+  if (largest.depth > overlap_allowed())
+    throw CollapsedPacking(message("grains ", largest.first, " and ", largest.second, " overlap by ", largest.depth,
+                                   " diameters in flow; at most ", overlap_allowed(),
+                                   " is allowed: relax more, or let spots displace less at a time"));
+}
+
+void Drainage::require_left_through_orifice(std::size_t first) const {
+  for (std::size_t k = first; k < drained_.size(); ++k) {
+    const Vector3& centre = drained_[k].position;
+    if (container_->may_have_left_to(centre)) continue;
+    throw CollapsedPacking(message("grain ", drained_[k].id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
+                                   ") left through the base, beside the orifice of radius ",
+                                   container_->orifice().radius, ": relax more, or let spots displace less at a time"));
+  }
 }
 
 void Drainage::require_valid_start() {

@@ -182,19 +182,27 @@ void Packing::lengthen_lists() {
   list_capacity_ = capacity;
 }
 
+void Packing::find_deeper_overlap(std::uint32_t i, double& least_squared, Overlap& overlap) const {
+  const auto [first, last] = neighbours(i);
+  for (const std::uint32_t* j = first; j != last; ++j) {
+    const double squared = distance_squared(i, position(*j));
+    if (squared >= least_squared) continue;
+    least_squared = squared;
+    overlap = {1.0 - std::sqrt(squared) / diameter_, std::min(ids_[i], ids_[*j]), std::max(ids_[i], ids_[*j])};
+  }
+}
+
 Overlap Packing::largest_overlap() const {
   Overlap largest;
-  double least = diameter_ * diameter_;
-  for (std::size_t i = 0; i < slots(); ++i) {
-    const auto [first, last] = neighbours(i);
-    for (const std::uint32_t* j = first; j != last; ++j) {
-      const double dx = x_[*j] - x_[i], dy = y_[*j] - y_[i], dz = z_[*j] - z_[i];
-      const double squared = dx * dx + dy * dy + dz * dz;
-      if (squared >= least) continue;
-      least = squared;
-      largest = {1.0 - std::sqrt(squared) / diameter_, std::min(ids_[i], ids_[*j]), std::max(ids_[i], ids_[*j])};
-    }
-  }
+  double least_squared = diameter_ * diameter_;
+  for (std::uint32_t i = 0; i < slots(); ++i) find_deeper_overlap(i, least_squared, largest);
+  return largest;
+}
+
+Overlap Packing::largest_overlap(const std::vector<std::uint32_t>& grains) const {
+  Overlap largest;
+  double least_squared = diameter_ * diameter_;
+  for (const std::uint32_t i : grains) find_deeper_overlap(i, least_squared, largest);
   return largest;
 }
 

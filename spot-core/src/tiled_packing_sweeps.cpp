@@ -43,7 +43,12 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
   });
   update_lists(container);
   std::int64_t swept = 0;
-  for (const Share& share : shares_) swept += static_cast<std::int64_t>(share.active.size());
+  float depth = 0.0f;
+  for (const Share& share : shares_) {
+    swept += static_cast<std::int64_t>(share.active.size());
+    depth = std::max(depth, share.depth);
+  }
+  overlap_swept_ = 1.0 - std::sqrt(1.0 - static_cast<double>(depth));
   return static_cast<std::size_t>(communicator_->sum(swept));
 }
 
@@ -101,13 +106,15 @@ void TiledPacking::push(Point& point, const Vector3& by) const {
   point.z = add(point.z, wrap(q[2]));
 }
 
-void TiledPacking::apply(const Share& share, int due, float deepest, float momentum) {
+void TiledPacking::apply(Share& share, int due, float deepest, float momentum) {
   std::size_t k = 0;
+  share.depth = 0.0f;
   for (std::uint32_t c = share.first; c < share.last; ++c) {
     const std::uint32_t cell = due_cells_[c], n = share.in_cell[c - share.first];
     const kernels::Corrections corrections = kernels_->correct(points_.data(), momenta_.data(), share.active.data() + k,
                                                                n, share.pushes.data() + k, momentum);
     k += n;
+    share.depth = std::max(share.depth, corrections.depth);
     account_[cell] -= due;
     if (corrections.depth > deepest) account_[cell] = std::max(account_[cell], due);
     // A little more than it may be, for the rounding.

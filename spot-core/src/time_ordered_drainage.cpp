@@ -108,9 +108,13 @@ bool TimeOrderedDrainage::relaxes_around(const Move& move) const {
 }
 
 void TimeOrderedDrainage::relax(const std::vector<std::uint32_t>& grains) {
-  relaxation_.sweep(packing_, container(), grains);
+  const double deepest = relaxation_.sweep(packing_, container(), grains);
   ++counters_.sweeps;
   counters_.grains_swept += static_cast<std::int64_t>(grains.size());
+  // Pushes that make overlaps much deeper start from deep ones.
+  if (!relaxes_every_move() || deepest <= 0.25 * overlap_allowed()) return;
+  packing_.update_lists(container());
+  require_no_collapse(packing_.largest_overlap(grains));
 }
 
 void TimeOrderedDrainage::relax_everywhere() {
@@ -131,11 +135,13 @@ int TimeOrderedDrainage::enclosed(const Move& move) const {
 
 void TimeOrderedDrainage::take_out_drained() {
   packing_.update_lists(container());
+  const std::size_t before = drained_.size();
   for (const std::uint32_t i : near_) {
     if (packing_.z()[i] >= limits_.outlet) continue;
     drained_.push_back(packing_.remove(i));
     ++counters_.drained;
   }
+  if (relaxes_every_move()) require_left_through_orifice(before);
 }
 
 void TimeOrderedDrainage::replace_grains(const std::vector<Grain>& grains) {

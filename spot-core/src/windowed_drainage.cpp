@@ -17,7 +17,51 @@ constexpr int most_sweeps = 16;
 /// A cell with an overlap deeper than this, in diameters, is due once more. DEM's deepest is 0.013.
 constexpr double deepest_overlap = 0.02;
 
+/// Windows after which all grains are looked at for overlaps, which costs 1 % of the run time.
+constexpr std::int64_t windows_between_looks = 64;
+
+/// In a window spots climb no farther than this, in diameters: coordinates wrap around after 256 of them. And no less
+/// than this, or time hardly goes on.
+constexpr double highest_climb = 64.0, least_climb = 1e-6;
+
+/// Of one spot, and of all, in a window.
+constexpr double most_steps = 1e6, most_births = 1e7;
+
+/// How far the grains over the orifice go in a window, in diameters, on average: farther, and they pass through the
+/// base before they are relaxed.
+constexpr double longest_flow = 1.0;
+
+/// Diameters that grains pass through the orifice in this time.
+double flow_through_orifice(const SpotParameters& spots, double time, double diameter, double orifice_radius) {
+  constexpr double packing_fraction = 0.58;
+  const double radii = spots.radius / diameter, orifice = orifice_radius / diameter;
+  const double enclosed =
+      spots.fixed_volume > 0.0 ? spots.fixed_volume : 8.0 * packing_fraction * radii * radii * radii;
+  const double grains = time * spots.injection_rate * spots.influence * enclosed;
+  // A grain takes pi / 6 d^3; what passes is a cylinder as wide as the orifice.
+  return grains / (6.0 * packing_fraction * orifice * orifice);
+}
+
 }  // namespace
+
+void WindowedDrainage::require_fitting_window() const {
+  // Spots that step together carry out in one window what others do in all of the time between steps.
+  const double clock = parameters_.together ? std::max(window_, parameters_.mean_waiting_time()) : window_;
+  const auto require = [&](double value, double most, const char* what) {
+    if (!(value <= most))
+      throw InvalidParameter(message("in a window of ", clock, ' ', value, ' ', what, ", but at most ", most,
+                                     " are allowed: shorten the window"));
+  };
+  const double climb = clock * (parameters_.speed / diameter_);
+  if (!(climb >= least_climb))
+    throw InvalidParameter(message("in a window of ", clock, " spots climb ", climb, " diameters, but at least ",
+                                   least_climb, " are needed: lengthen the window"));
+  require(climb, highest_climb, "diameters are climbed by spots");
+  require(clock * parameters_.move_rate(), most_steps, "steps are taken by a spot");
+  require(clock * parameters_.injection_rate, most_births, "spots are born");
+  require(flow_through_orifice(parameters_, clock, diameter_, container().orifice().radius), longest_flow,
+          "diameters pass the orifice");
+}
 
 double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tolerance) {
   if (!(tolerance > 0.0) || !std::isfinite(tolerance))
@@ -45,6 +89,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       walk_(spots, *container_) {
   next_birth_ = walk_.time_before_birth(0);
   TiledPacking::require_radius(spots.radius, diameter);
+  require_fitting_window();
   require_valid_start();
 }
 
@@ -62,6 +107,7 @@ void WindowedDrainage::advance_to(double time) {
     const std::size_t drained_before = drained_.size();
     packing_.take_out_below(limits_.outlet, drained_);
     counters_.drained += static_cast<std::int64_t>(drained_.size() - drained_before);
+    require_left_through_orifice(drained_before);
   }
 }
 
@@ -129,14 +175,19 @@ std::vector<Spot> WindowedDrainage::spots() const {
 }
 
 void WindowedDrainage::relax() {
+  double overlap = 0.0;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     // Once a window only: a cell that is swept over and over on its own is pushed into its neighbours.
     const double deepest = sweep == 0 ? deepest_overlap : std::numeric_limits<double>::infinity();
     const std::size_t swept = packing_.sweep(relaxation_parameters_, due_, deepest, container(), *workers_);
-    if (swept == 0) return;
+    if (swept == 0) break;
     ++counters_.sweeps;
     counters_.grains_swept += static_cast<std::int64_t>(swept);
+    overlap = std::max(overlap, packing_.overlap_swept());
   }
+  // Sweeps do not see cells that are not due.
+  if (overlap > overlap_allowed() || windows_ % windows_between_looks == 0)
+    require_no_collapse(packing_.largest_overlap());
 }
 
 void WindowedDrainage::replace_grains(const std::vector<Grain>& grains) {

@@ -72,6 +72,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       packing_(diameter, extent, read(saved), *container_, communicator_),
       walk_(spots, *container_) {
   TiledPacking::require_radius(spots.radius, diameter);
+  require_fitting_window();
   keep_own_spots();
 }
 

@@ -339,4 +339,14 @@ TEST(ContainerUnit, OrificeNarrowerThanTheSpotsIsNamed) {
   EXPECT_NO_THROW(silo->require_entrance(2.5));
 }
 
+TEST(ContainerUnit, GrainsLeaveThroughTheHoleAlone) {
+  const auto silo = spot::box_silo(-6.0, 6.0, -4.0, 4.0, spot::Orifice{{1.0, 0.0, 2.0}, 3.0}, spot::SpotBuffers{1, 1});
+  EXPECT_TRUE(silo->may_have_left_to({1.0, 0.0, 1.99}));
+  EXPECT_TRUE(silo->may_have_left_to({3.99, 0.0, 1.99}));
+  EXPECT_FALSE(silo->may_have_left_to({1.0, -3.02, 1.99}));
+  // Below it they spread.
+  EXPECT_TRUE(silo->may_have_left_to({1.0, -3.02, 1.5}));
+  EXPECT_FALSE(silo->may_have_left_to({1.0, -3.6, 1.5}));
+}
+
 }  // namespace

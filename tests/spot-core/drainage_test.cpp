@@ -518,14 +518,57 @@ TEST(DrainageUnit, ReplacingChecksTheNewGrains) {
 /// Without relaxation nothing keeps grains off the walls.
 TEST(DrainageUnit, GrainsThatWereDrivenOutOfTheContainerAreNamed) {
   SpotParameters spots = scenes::paper_spots();
-  spots.influence = 0.9;
+  spots.influence = 0.7;
   RelaxationParameters never;
   never.every = 0;
   TimeOrderedDrainage drainage = drainage_of(filling(6.0), spots, never);
   EXPECT_NO_THROW(drainage.require_inside());
-  drainage.advance_to(1.0);
+  drainage.advance_to(4.0);
   EXPECT_THAT(scenes::text_of<InvalidPacking>([&] { drainage.require_inside(); }),
               AllOf(HasSubstr("grain "), HasSubstr("is outside the container")));
+}
+
+/// The text of the error of a drainage with paper's spots, one number of them changed.
+std::string refusal_of(double SpotParameters::*number, double value) {
+  SpotParameters spots = scenes::paper_spots();
+  spots.*number = value;
+  return scenes::text_of<InvalidParameter>([&] { drainage_of({{1, {0.0, 0.0, 1.0}}}, spots); });
+}
+
+TEST(DrainageUnit, StepsThatNoRelaxationCouldFollowAreRefusedWithTheirBound) {
+  EXPECT_THAT(refusal_of(&SpotParameters::influence, 0.8), AllOf(HasSubstr("up to 0.549"), HasSubstr("at most 0.5")));
+  // The weight of a spot with a fixed volume can be this over 20.
+  EXPECT_THAT(refusal_of(&SpotParameters::fixed_volume, 6000.0),
+              AllOf(HasSubstr("up to 0.515"), HasSubstr("at most 0.5"), HasSubstr("volume")));
+  EXPECT_THAT(refusal_of(&SpotParameters::step_height, 17.0), AllOf(HasSubstr("17 diameters"), HasSubstr("most 16")));
+  EXPECT_THAT(refusal_of(&SpotParameters::step_width, 17.0), AllOf(HasSubstr("17 diameters"), HasSubstr("most 16")));
+  EXPECT_THAT(refusal_of(&SpotParameters::step_height, 1e-300), AllOf(HasSubstr("1e-300"), HasSubstr("least 1e-06")));
+  EXPECT_THAT(refusal_of(&SpotParameters::injection_rate, 1e9), AllOf(HasSubstr("1e+09"), HasSubstr("most 10000000")));
+  EXPECT_THAT(refusal_of(&SpotParameters::speed, 1e-12), AllOf(HasSubstr("3.63e+14"), HasSubstr("most 10000000")));
+}
+
+TEST(DrainageUnit, APackingThatCollapsesInFlowIsAnError) {
+  SpotParameters spots = scenes::paper_spots();
+  spots.influence = 0.2;
+  RelaxationParameters weak;
+  weak.alpha = 0.05;
+  TimeOrderedDrainage drainage = drainage_of(filling(8.0), spots, weak);
+  EXPECT_THAT(scenes::text_of<spot::CollapsedPacking>([&] { drainage.advance_to(4.0); }),
+              AllOf(HasSubstr("grain"), HasSubstr("relax more")));
+}
+
+TEST(DrainageUnit, HowDeepOverlapsMayBeInFlowIsSettable) {
+  const std::vector<Grain> pair = {{1, {0.0, 0.0, 1.0}}, {2, {0.6, 0.0, 1.0}}, {3, {0.0, 0.0, 3.0}}};
+  RelaxationParameters weak;
+  weak.alpha = 1e-3;
+  const auto start = [&](double at_start, double in_flow) {
+    return TimeOrderedDrainage(scenes::paper_spots(), weak, DrainageLimits{-1.0, at_start, in_flow},
+                               scenes::small_silo(6.0, 4.0), Packing(1.0, 100.0, pair));
+  };
+  // What is allowed at the start is allowed later.
+  EXPECT_NO_THROW(start(0.5, 0.3).advance_to(0.5));
+  EXPECT_NO_THROW(start(0.41, 0.5).advance_to(0.5));
+  EXPECT_THROW(start(0.41, 0.0), InvalidParameter);
 }
 
 TEST(DrainageUnit, GrainsOutsideAreNamed) {

@@ -261,6 +261,43 @@ TEST(WindowedDrainageUnit, NobodyIsLostOrOutside) {
   }
 }
 
+TEST(WindowedDrainageUnit, WindowsThatAreTooLongAreRefusedWithTheirBound) {
+  const auto refusal = [](const SpotParameters& spots, double length) {
+    return scenes::text_of<InvalidParameter>([&] { drainage_of(filling(3.0), spots, {}, length); });
+  };
+  const SpotParameters paper = scenes::paper_spots();
+  EXPECT_THAT(refusal(paper, 1.0), AllOf(HasSubstr("window of 1 "), HasSubstr("1.329"), HasSubstr("at most 1 ")));
+  EXPECT_THAT(refusal(paper, 30.0), AllOf(HasSubstr("96 diameters are climbed"), HasSubstr("at most 64")));
+  SpotParameters spots = paper;
+  spots.step_height = 2e-6;
+  EXPECT_THAT(refusal(spots, 10.0), AllOf(HasSubstr("16000000 steps"), HasSubstr("at most 1000000")));
+  spots = paper;
+  spots.injection_rate = 2e7;
+  EXPECT_THAT(refusal(spots, 1.0), AllOf(HasSubstr("20000000 spots are born"), HasSubstr("at most 10000000")));
+  // What steps together goes as far as in all of the time between.
+  spots = coarse_spots();
+  EXPECT_NO_THROW(drainage_of(filling(3.0), spots));
+  spots.together = true;
+  spots.injection_rate *= 4.0;
+  EXPECT_THAT(refusal(spots, window), AllOf(HasSubstr("window of 0.25 "), HasSubstr("at most 1 ")));
+  EXPECT_THAT(refusal(paper, 1e-300), AllOf(HasSubstr("3.2e-300 diameters"), HasSubstr("at least 1e-06")));
+}
+
+/// Whether or not the sweeps themselves come across it.
+TEST(WindowedDrainageUnit, APackingThatCollapsesInFlowIsAnError) {
+  for (const double tolerance : {0.01, 1e6}) {
+    RelaxationParameters weak;
+    weak.tolerance = tolerance;
+    weak.alpha = 0.01;
+    SpotParameters spots = coarse_spots();
+    spots.influence = 0.01;
+    WindowedDrainage drainage = drainage_of(filling(15.0), spots, weak);
+    EXPECT_THAT(scenes::text_of<spot::CollapsedPacking>([&] { drainage.advance_to(10.0); }),
+                AllOf(HasSubstr("grain"), HasSubstr("relax more")))
+        << tolerance;
+  }
+}
+
 /// Every pair that overlaps is in the lists, however long grains flow and however far they jump.
 TEST(WindowedDrainageBruteForce, ListsAreCompleteInLongFlow) {
   SpotParameters spots = coarse_spots();

@@ -74,6 +74,9 @@ class Container {
 
   virtual const Orifice& orifice() const = 0;
 
+  /// May a grain that is here now, below the orifice, have come out of it? Else it went through a wall.
+  virtual bool may_have_left_to(const Vector3&) const { return true; }
+
   /// Where a spot at `start` that wants to step to `target` ends: at least its buffer away from every wall.
   virtual Vector3 keep_spot_inside(const Vector3& start, const Vector3& target) const = 0;
 
@@ -92,6 +95,9 @@ class Wall {
   /// `target`, reflected to the inner side of the surface `buffer` in front of the wall.
   /// Reflection keeps spots that walk along a plane wall uniformly distributed in front of it.
   virtual Vector3 reflect_spot(double buffer, const Vector3& target) const;
+
+  /// As of Container.
+  virtual bool may_have_left_to(const Vector3&) const { return true; }
 
   /// The plane across an axis that this wall is, or nothing.
   virtual std::optional<AxisPlane> axis_plane() const { return std::nullopt; }
@@ -129,6 +135,8 @@ class BasePlate : public Wall {
   WallContact nearest(const Vector3& centre) const override;
   /// Reflects towards the axis at constant height, so that a spot on its way up through the hole is not held back.
   Vector3 reflect_spot(double buffer, const Vector3& target) const override;
+  /// Below the hole grains spread no farther than they have come down.
+  bool may_have_left_to(const Vector3& centre) const override;
 
  private:
   Orifice orifice_;
@@ -147,6 +155,7 @@ class WalledContainer : public Container {
   const std::vector<AxisPlane>& axis_planes() const override { return axis_planes_; }
   void other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
   const Orifice& orifice() const override { return orifice_; }
+  bool may_have_left_to(const Vector3& centre) const override;
   Vector3 keep_spot_inside(const Vector3& start, const Vector3& target) const override;
 
  private:

@@ -25,6 +25,9 @@ struct Move {
 /// part of the spot above the outlet (2010, section 3.3). 1 if the parameters say that they don't.
 double fixed_volume_weight(const SpotParameters& parameters, double height, int grains);
 
+/// No weight is larger.
+double largest_weight(const SpotParameters& parameters);
+
 /// Moves every one of the given grains with its centre within `radius` of the move's middle by
 /// -weight * influence * step, rounded to the quantum (2006, eq. 1). Returns how many grains moved.
 int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move, double radius,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -31,6 +32,9 @@ struct Counters {
 struct DrainageLimits {
   double outlet;                  ///< grains with centres below this height are taken out (length)
   double largest_overlap = 0.03;  ///< allowed in the starting packing, in diameters
+  /// What relaxation may leave behind in flow, in diameters, if no more was allowed at the start. DEM has 0.013, the
+  /// spot model 0.03 with the fitted parameters; at 0.3 a packing collapses.
+  double largest_overlap_in_flow = 0.3;
 };
 
 /// A packing that drains as spots climb through it: what all drivers have in common.
@@ -39,7 +43,7 @@ class Drainage {
   virtual ~Drainage() = default;
 
   /// Goes on until `time`, in the units of the rates; births and steps start at time 0. A windowed driver stops at the
-  /// last whole window before it.
+  /// last whole window before it. Throws CollapsedPacking if relaxation does not keep up with the moves.
   virtual void advance_to(double time) = 0;
 
   /// Goes on with other grains, as after somebody else moved, added or took some; the spots stay. Throws
@@ -102,6 +106,15 @@ class Drainage {
   }
 
   const Container& container() const { return *container_; }
+
+  /// Largest overlap that may stand after a relaxation, in diameters.
+  double overlap_allowed() const { return std::max(limits_.largest_overlap, limits_.largest_overlap_in_flow); }
+
+  /// Throws CollapsedPacking, naming the grains, if they overlap more deeply than that.
+  void require_no_collapse(const Overlap& largest) const;
+
+  /// Throws CollapsedPacking if one of drained_, from this index on, left through a wall instead of the orifice.
+  void require_left_through_orifice(std::size_t first) const;
 
   SpotParameters parameters_;
   RelaxationParameters relaxation_parameters_;

@@ -25,6 +25,13 @@ class InvalidContainer : public Error {
   using Error::Error;
 };
 
+/// The grains of a running drainage went where relaxation cannot bring them back from: too deep into each other, or
+/// through the base.
+class CollapsedPacking : public Error {
+ public:
+  using Error::Error;
+};
+
 /// The grains are no valid starting packing: not finite, outside, overlapping, repeated ids.
 class InvalidPacking : public Error {
  public:

@@ -107,6 +107,9 @@ class Packing {
   /// The largest overlap of two grains. The lists must be up to date.
   Overlap largest_overlap() const;
 
+  /// The same of some grains and their neighbours.
+  Overlap largest_overlap(const std::vector<std::uint32_t>& grains) const;
+
   /// Bytes held.
   std::size_t memory() const;
 
@@ -118,6 +121,7 @@ class Packing {
   void unlist(std::uint32_t i);
   void list(std::uint32_t i, const Container& container);
   void mark_near_wall(std::uint32_t i, const Container& container);
+  void find_deeper_overlap(std::uint32_t i, double& least_squared, Overlap& overlap) const;
   void add_neighbour(std::uint32_t i, std::uint32_t j);
   void lengthen_lists();
 

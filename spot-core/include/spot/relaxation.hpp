@@ -21,15 +21,17 @@ class Relaxation {
 
   const RelaxationParameters& parameters() const { return parameters_; }
 
-  /// The packing's lists must be up to date; no grain may occur twice.
-  void sweep(Packing& packing, const Container& container, const std::vector<std::uint32_t>& movable);
+  /// The packing's lists must be up to date; no grain may occur twice. Returns the largest overlap of two grains that
+  /// it found, in diameters.
+  double sweep(Packing& packing, const Container& container, const std::vector<std::uint32_t>& movable);
 
  private:
   struct Push {
     double x = 0.0, y = 0.0, z = 0.0;
   };
 
-  void push_off_neighbours(const Packing& packing, std::uint32_t grain, Push& push) const;
+  /// Returns the least squared distance to a neighbour that overlaps, or the square of the diameter.
+  double push_off_neighbours(const Packing& packing, std::uint32_t grain, Push& push) const;
   void push_off_walls(const Packing& packing, const Container& container, std::uint32_t grain, Push& push);
 
   RelaxationParameters parameters_;

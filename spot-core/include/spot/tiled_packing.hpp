@@ -91,6 +91,9 @@ class TiledPacking {
   std::size_t sweep(const RelaxationParameters& parameters, double due, double deepest, const Container& container,
                     Workers& workers);
 
+  /// The largest overlap, in diameters, of the grains in the last sweep, before it pushed them apart.
+  double overlap_swept() const { return overlap_swept_; }
+
   /// Marks the grains near walls anew, as after the walls changed.
   void mark_near_walls(const Container& container);
 
@@ -118,6 +121,7 @@ class TiledPacking {
     std::vector<std::uint8_t> in_cell;  // how many of them are in each cell
     std::vector<std::uint32_t> walled;  // places in `active` of those near walls
     std::vector<Point> pushes;
+    float depth;  // of the deepest overlap, as in a push
   };
 
   struct TouchingPlane {
@@ -207,7 +211,7 @@ class TiledPacking {
   void push_off_planes(Share& share, float strength) const;
   void push_off_other_walls(Share& share, double strength, const Container& container) const;
   void push(Point& point, const Vector3& by) const;
-  void apply(const Share& share, int due, float deepest, float momentum);
+  void apply(Share& share, int due, float deepest, float momentum);
 
   /// Accounts are kept in sixteenths of a move, and a sweep can cost such parts.
   static constexpr std::int32_t parts_of_move = 16;
@@ -223,6 +227,7 @@ class TiledPacking {
   std::uint32_t capacity_ = 8;
   std::uint32_t list_capacity_;
   std::size_t size_ = 0;
+  double overlap_swept_ = 0.0;
 
   std::shared_ptr<Communicator> communicator_;
   Slabs slabs_{{0}, 1};

@@ -42,6 +42,10 @@ class TimeOrderedDrainage : public Drainage {
   void carry_out(Move move);
   int enclosed(const Move& move) const;
   bool relaxes_around(const Move& move) const;
+  /// As in 2006. The other schedules are there to see what comes of less, and may let the packing collapse.
+  bool relaxes_every_move() const {
+    return relaxation_parameters_.schedule == RelaxationSchedule::moves && relaxation_parameters_.every == 1;
+  }
   void relax(const std::vector<std::uint32_t>& grains);
   void relax_everywhere();
   void take_out_drained();

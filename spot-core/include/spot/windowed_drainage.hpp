@@ -70,6 +70,8 @@ class WindowedDrainage : public Drainage {
 
   static double moves_until_due(const SpotParameters& spots, double tolerance);
   static double positive_window(double window);
+  /// Throws InvalidParameter if relaxation could not follow what spots do in a window.
+  void require_fitting_window() const;
   bool here(const Vector3& position) const { return packing_.owner(position.z()) == communicator_->rank(); }
   void give_birth(double until);
   void walk(double until);
