@@ -73,7 +73,7 @@ inline std::vector<spot::Grain> dense_grains(const spot::Vector3& low, const spo
   for (int axis = 0; axis < 3; ++axis) {
     const double length = high[axis] - low[axis];
     layers[axis] = static_cast<int>(std::lround(length / 0.609));
-    spacing[axis] = length / layers[axis];
+    spacing[axis] = layers[axis] > 0 ? length / layers[axis] : 0.0;
   }
   std::vector<spot::Grain> grains;
   for (int iz = 0; iz <= layers[2]; ++iz)
