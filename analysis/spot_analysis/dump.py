@@ -209,7 +209,7 @@ def _read_item(lines, item, header):
             header["BOX BOUNDS"] = np.array(rows, dtype=float)
         except ValueError as error:
             raise lines.error(f"'ITEM: BOX BOUNDS': {error}") from error
-    elif item.split()[0] == "ATOMS":
+    elif item.split()[:1] == ["ATOMS"]:
         header["ATOMS"] = item.split()[1:]
     else:
         raise lines.error(f"unknown 'ITEM: {item}' (a dump of atoms has TIMESTEP, TIME, UNITS, NUMBER OF ATOMS, "
@@ -260,7 +260,8 @@ def _bad_row(lines, rows, first, columns, wanted):
 
 
 def _checked_ids(values, lines):
-    ids = values.astype(np.int64)
+    with np.errstate(invalid="ignore"):  # NaN is no whole number either
+        ids = values.astype(np.int64)
     if not np.array_equal(ids, values):
         raise lines.error("column 'id' holds values that are no whole numbers (frame ending here)")
     repeated = np.flatnonzero(np.diff(ids) == 0)
@@ -293,7 +294,7 @@ def _first_timestep(path):
                 taken = lines.take(1)
                 if not taken and lines.number == 0:
                     raise _nothing_in(path)
-                if not taken:
+                if not taken or not taken[0].endswith("\n") and "ITEM: ".startswith(taken[0][:6]):
                     return float("inf")
                 if not taken[0].startswith("ITEM: "):
                     raise lines.error(f"no dump: expected a line 'ITEM: ...', found '{taken[0].strip()[:60]}'")
