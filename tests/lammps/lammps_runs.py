@@ -90,7 +90,8 @@ def run(text, folder, program=FRONT_END, launcher=(), **environment):
         write_data(folder / "packing.data", lattice())
     (folder / "in.deck").write_text(text)
     return subprocess.run([*launcher, program, "-in", "in.deck", "-log", "none", "-nocite"], cwd=folder,
-                          env={**os.environ, "SPOT_PLUGIN": PLUGIN, **environment}, capture_output=True, text=True, timeout=300)
+                          env={**os.environ, "SPOT_PLUGIN": PLUGIN, **environment}, capture_output=True, text=True, errors="replace",
+                          timeout=300)
 
 
 def run_ok(text, folder, **options):
