@@ -24,6 +24,8 @@ constexpr double longest_step = 16.0, shortest_step = 1e-6;
 constexpr double most_births = 1e7;
 
 void require_steps(const SpotParameters& spots, double diameter) {
+  if (!(diameter > 0.0) || !std::isfinite(diameter))
+    throw InvalidParameter(message("grain diameter is ", diameter, " but must be positive and finite"));
   const double longest = std::max(spots.step_width, spots.step_height) / diameter;
   if (!(longest <= longest_step))
     throw InvalidParameter(
