@@ -77,7 +77,8 @@ void follow(const Scene& scene, spot::Drainage& drainage, Outcome& outcome) {
     outcome.largest.largest = std::max(outcome.largest.largest, outcome.last.largest);
     outcome.largest.badness = std::max(outcome.largest.badness, outcome.last.badness);
   }
-  // The drivers have some time to find out by themselves.
+  // The windowed driver looks at all grains every 64 windows: it has this time to find out by itself.
+  if (outcome.largest.largest > overlap_bound) drainage.advance_to(scene.time + 65.0 * scene.window);
   if (outcome.text.empty() && outcome.largest.largest > overlap_bound)
     outcome.text = spot::message("overlap of ", outcome.largest.largest, " d");
   if (!outcome.text.empty()) outcome.kind = Outcome::neither;
