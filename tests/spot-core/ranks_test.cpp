@@ -129,7 +129,7 @@ TEST_P(RanksInvariance, ChangeNothing) {
 
 TEST_P(RanksInvariance, ChangeNothingInLongWindowsInWhichListsMustBeMadeAnew) {
   Scene scene;
-  scene.window = 0.4;
+  scene.window = 0.25;
   scene.spots.influence = 0.02;
   static const Outcome alone = drain(scene, 1, 2.0);
   expect_same(drain(scene, GetParam(), 2.0), alone);
