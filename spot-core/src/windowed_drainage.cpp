@@ -17,7 +17,7 @@ constexpr int most_sweeps = 16;
 /// A cell with an overlap deeper than this, in diameters, is due once more. DEM's deepest is 0.013.
 constexpr double deepest_overlap = 0.02;
 
-/// Windows after which all grains are looked at for overlaps, which costs 1 % of the run time.
+/// Windows after which all grains are looked at for overlaps, which costs less than 1 % of the run time.
 constexpr std::int64_t windows_between_looks = 64;
 
 /// In a window spots climb no farther than this, in diameters: coordinates wrap around after 256 of them. And no less
