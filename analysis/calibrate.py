@@ -10,7 +10,7 @@ from spot_analysis.interpreter import require_packages
 require_packages("numpy", "scipy", "matplotlib")
 
 from spot_analysis import (calibration, calibration_output, calibration_plots, calibration_refinement,  # noqa: E402
-                           calibration_response, calibration_spreading, command_line)
+                           calibration_response, calibration_view, command_line)
 
 EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "examples", "silo", "in.silo_spot")
 
@@ -19,7 +19,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(
         description=__doc__, epilog="Needs the packing at rest (TIMESTEP 0) and snapshots every 2 tau over at least 24 tau "
         "of steady flow, as dumps with a scene.json beside them. Lengths in grain diameters d, times in tau = sqrt(d/g).")
-    parser.add_argument("dumps", metavar="DUMPS", help="folder, file or wildcard of dumps (text or gzip)")
+    parser.add_argument("dumps", metavar="DUMPS", help="folder, file or wildcard of dumps, or statistics of measure.py")
     parser.add_argument("--from", dest="start", type=float, metavar="TAU",
                         help="start of the interval (default: the longest stretch of snapshots from 40 tau on)")
     parser.add_argument("--to", dest="end", type=float, metavar="TAU", help="end of the interval (default: last snapshot)")
@@ -29,8 +29,6 @@ def parse_arguments():
     parser.add_argument("--plots", metavar="FOLDER", help="a picture of every fit")
     parser.add_argument("--buffer", type=float, default=1.0, metavar="D",
                         help="distance that spot centres keep from side walls, fix spot's 'buffer' (default: %(default)s d)")
-    parser.add_argument("--spreading", choices=calibration_spreading.METHODS, default="walled_moment",
-                        help="which variance of the v_z profile gives b_s (default: %(default)s)")
     parser.add_argument("--response", choices=sorted(calibration_response.STORED), default="windowed",
                         help="what is taken for the difference between what spots do and what grains show: that of fix "
                         "spot's driver, of spots without relaxation, or none, as 2006 (default: %(default)s)")
@@ -46,9 +44,8 @@ def parse_arguments():
 
 def main():
     options = parse_arguments()
-    scene = command_line.scene_from_options(options, options.dumps)
-    measured = calibration.measure(options.dumps, scene, options.start, options.end, options.buffer, options.spreading,
-                                   command_line.print_warning)
+    run = command_line.open_run(options.dumps, options, "", "calibrate", calibration_view.CONCEPTS)
+    measured = calibration.measure(run, options.start, options.end, options.buffer)
     response = calibration_response.stored_response(options.response)
     uncorrected = calibration.parameters(measured, calibration_response.stored_response("2006"))
     result = calibration.parameters(measured, response)
@@ -56,10 +53,11 @@ def main():
         result, response = calibration_refinement.refine(
             measured, response, options.refine, options.deck, options.lmp, options.refine_time, options.fix,
             command_line.print_warning)
-    print(f"{measured.tracks.span[0]:g} to {measured.tracks.span[1]:g} tau, {len(measured.tracks.times)} snapshots\n")
+    span = measured.view.interval.span
+    print(f"{span[0]:g} to {span[1]:g} tau, {len(measured.view.snapshots)} snapshots\n")
     print(calibration_output.table(result, uncorrected))
     if options.output:
-        write(options.output, calibration_output.lammps_variables(result, options.dumps, measured.tracks.span))
+        write(options.output, calibration_output.lammps_variables(result, options.dumps, span))
     if options.json:
         write(options.json, calibration_output.as_json(measured, result, uncorrected, response, options.dumps))
     if options.plots:

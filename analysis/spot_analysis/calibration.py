@@ -12,14 +12,13 @@ import numpy as np
 from .calibration_correlation import Correlation, measure_correlation
 from .calibration_diffusion import Diffusion, measure_diffusion
 from .calibration_estimate import CalibrationError, Estimate, combine
-from .calibration_flow import measure_drop, measure_outflow
+from .calibration_flow import measure_drop, measure_fraction, measure_outflow
 from .calibration_front import Front, measure_front
-from .calibration_mean_flow import take_out_mean_flow
-from .calibration_spot_grains import cut_share, grains_within, measure_spot_grains
+from .calibration_spot_grains import spot_grains
 from .calibration_spreading import Spreading, measure_spreading
-from .calibration_tracks import Core, Tracks, find_core, read_tracks
+from .calibration_view import view_of
 from .counts import SLAB
-from .progress import Progress
+from .interval import IntervalView
 
 STEP_HEIGHT = 0.1  # d, dz of 2006: sets the move rate v_s / dz and the sideways step sqrt(4 b_s dz)
 UNITS = {"radius": "d", "influence": "1", "volume": "grains", "diffusion": "d", "speed": "d/tau", "injection": "1/tau"}
@@ -30,20 +29,20 @@ SYMBOLS = {"radius": "R_s", "influence": "w", "volume": "<N>", "diffusion": "b_s
 class Measured:
     """All that was read off one run; Estimates in d and tau.
 
+    view : of the snapshots that the run is calibrated on
     outflow : F; drop : grains missing between the heights of SLAB; front : Front, None without early snapshots
-    grain_table : mean number of grains in spheres of SPOT_RADII
+    fraction : packing fraction in flow
     buffer : distance that spot centres keep from the walls
     """
 
-    tracks: Tracks
-    core: Core
+    view: IntervalView
     outflow: Estimate
     drop: Estimate
     front: Front
     correlation: Correlation
     spreading: Spreading
     diffusion: Diffusion
-    grain_table: Estimate
+    fraction: Estimate
     buffer: float
 
     @property
@@ -54,36 +53,21 @@ class Measured:
 
     def grains_in(self, radius):
         """<N> in a spot of the Estimate ``radius``."""
-        return grains_within(self.grain_table, radius)
-
-    def grains_formula(self, radius):
-        """<N> from the mean packing fraction of the core's heights and the sphere that walls cut (2006: uncut)."""
-        container = self.tracks.container
-        heights = self.tracks.positions[..., 2]
-        with np.errstate(invalid="ignore"):
-            count = ((heights > self.core.bottom) & (heights < self.core.top)).sum(axis=1).mean()
-        volume = 4 * container.half_width * container.half_depth * (self.core.top - self.core.bottom)
-        return float(count / volume * 4 / 3 * np.pi * radius**3 * cut_share(container, radius, self.buffer))
+        container = self.view.run.scene.container()
+        return combine(lambda fraction, size: spot_grains(fraction, size, container, self.buffer), self.fraction, radius)
 
 
-def measure(source, scene, start=None, end=None, buffer=1.0, method="walled_moment", warn=print):
-    """Measured from the dumps ``source``; raises DumpError, SceneError, CalibrationError.
+def measure(run, start=None, end=None, buffer=1.0):
+    """Measured from RunStatistics; raises CalibrationError.
 
-    start, end : tau, see ``read_tracks``; buffer : d; method : one of ``calibration_spreading.METHODS``
+    start, end : tau, see ``calibration_view.choose_snapshots``; buffer : d
     """
-    tracks = read_tracks(source, scene, start, end, warn)
-    progress = Progress("calibrating")
-    outflow, drop, core = measure_outflow(tracks), measure_drop(tracks), find_core(tracks)
-    fluctuations = take_out_mean_flow(tracks, core)
-    diffusion = measure_diffusion(tracks, fluctuations, core)
-    correlation = measure_correlation(tracks, fluctuations, core, buffer, progress)
-    progress("v_z profiles")
-    spreading = measure_spreading(tracks, correlation.radius.value, buffer, core.top, method)
-    progress("grains in a spot")
-    table = measure_spot_grains(tracks, spreading.lines[method].value, buffer)
-    front = measure_front(tracks, float(outflow.value))
-    progress.finish("all fits done")
-    return Measured(tracks, core, outflow, drop, front, correlation, spreading, diffusion, table, buffer)
+    view = view_of(run, start, end)
+    outflow, drop = measure_outflow(view), measure_drop(view)
+    diffusion, correlation = measure_diffusion(view), measure_correlation(view, buffer)
+    spreading = measure_spreading(view, correlation.radius.value, buffer)
+    return Measured(view, outflow, drop, measure_front(run, float(outflow.value)), correlation, spreading, diffusion,
+                    measure_fraction(view), buffer)
 
 
 def parameters(measured, response):

@@ -3,69 +3,68 @@
 
 import numpy as np
 
-from .calibration_estimate import CalibrationError, combine, estimate
-from .counts import SLAB
+from .calibration_estimate import CalibrationError, combine
+from .calibration_view import estimate_snapshots, estimate_steps
+from .counts import SLAB, slab_counts
+from .packing import fractions
+from .structure import RDF_RANGE
 
 UNSTEADY = 0.15  # share of the outflow by which flow may drift, or differ at the slab, and still count as steady
 
 
-def measure_outflow(tracks):
+def measure_outflow(view):
     """F, grains a tau through z = 0, an Estimate; raises CalibrationError where there is none or it is not steady."""
-    crossed = _crossings(tracks, 0.0)
-    durations = np.diff(tracks.times)
-    outflow = _rate(tracks, crossed, durations)
+    outflow = _rate(view, 0.0)
+    start, end = view.interval.span
     if not outflow.is_determined():
         raise CalibrationError(f"no steady flow: {outflow.value:.2g} +- {outflow.error:.2g} grains a tau leave between "
-                               f"{tracks.span[0]:g} and {tracks.span[1]:g} tau")
-    _require_steady(tracks, outflow)
+                               f"{start:g} and {end:g} tau")
+    _require_steady(view, outflow)
     return outflow
 
 
-def _require_steady(tracks, outflow):
+def _require_steady(view, outflow):
     """Outflow must not drift, and what flows in through the slab's bottom must be what flows out."""
-    middle = np.mean(tracks.span)
-    late = tracks.step_times > middle
-    crossed, durations = _crossings(tracks, 0.0), np.diff(tracks.times)
+    middle, crossed = np.mean(view.interval.span), view.crossings(0.0)
+    times = view.run.times[view.snapshots]
+    late, durations = (times[1:] + times[:-1]) / 2 > middle, np.diff(times)
     early_rate, late_rate = (crossed[part].sum() / durations[part].sum() for part in (~late, late))
     drift = late_rate - early_rate
     if abs(drift) > max(UNSTEADY * outflow.value, 4 * outflow.error):
         raise CalibrationError(f"no steady flow: {early_rate:.3g} grains a tau leave before {middle:g} tau, "
                                f"{late_rate:.3g} after; choose a later interval with --from")
-    above = _rate(tracks, _crossings(tracks, SLAB[0]), durations)
+    above = _rate(view, SLAB[0])
     difference = combine(lambda one, other: one - other, above, outflow)
     if abs(difference.value) > max(UNSTEADY * outflow.value, 3 * difference.error):
         raise CalibrationError(f"no steady flow: {above.value:.3g} grains a tau pass z = {SLAB[0]} d, but "
                                f"{outflow.value:.3g} leave; choose a later interval with --from")
 
 
-def _crossings(tracks, level):
-    """(T - 1,) grains that pass ``level`` between snapshots; those that left the dump are below."""
-    with np.errstate(invalid="ignore"):
-        return -np.diff((tracks.positions[..., 2] > level).sum(axis=1))
+def _rate(view, level):
+    """Grains a tau that pass ``level``, an Estimate."""
+    durations = np.diff(view.run.times[view.snapshots])
+    return estimate_steps(view, np.column_stack([view.crossings(level), durations]),
+                          lambda sums: sums[..., 0] / sums[..., 1])
 
 
-def _rate(tracks, crossed, durations):
-    return estimate(tracks.step_times, np.column_stack([crossed, durations]), tracks.span,
-                    lambda sums: sums[..., 0] / sums[..., 1])
-
-
-def measure_drop(tracks):
+def measure_drop(view):
     """Grains that the slab has lost since the start, an Estimate; raises CalibrationError where it lost none."""
-    at_rest = int(_in_slab(tracks.initial[:, 2]))
-    heights = tracks.positions[..., 2]
-    highest = np.nanmax(heights[-1])
-    if highest < SLAB[1]:
-        raise CalibrationError(f"the packing ends at z = {highest:.0f} d, within the slab of {SLAB[0]} to {SLAB[1]} d whose "
-                               "density drop gives v_s")
-    with np.errstate(invalid="ignore"):
-        counts = _in_slab(heights)
-    drop = estimate(tracks.times, np.column_stack([counts, np.ones(len(counts))]), tracks.span,
-                    lambda sums: at_rest - sums[..., 0] / sums[..., 1])
+    run = view.run
+    if not run.count_above(SLAB[1])[view.snapshots[-1]]:
+        raise CalibrationError(f"the packing ends within the slab of {SLAB[0]} to {SLAB[1]} d whose density drop gives v_s")
+    counts = slab_counts(run)
+    drop = estimate_snapshots(view, np.column_stack([counts, np.ones(len(counts))]),
+                              lambda sums: counts[0] - sums[..., 0] / sums[..., 1])
     if not drop.is_determined():
-        raise CalibrationError(f"density does not drop: {at_rest} grains in {SLAB[0]} d < z < {SLAB[1]} d at rest, "
-                               f"{at_rest - drop.value:.0f} +- {drop.error:.0f} in flow; no v_s")
+        raise CalibrationError(f"density does not drop: {counts[0]} grains in {SLAB[0]} d < z < {SLAB[1]} d at rest, "
+                               f"{counts[0] - drop.value:.0f} +- {drop.error:.0f} in flow; no v_s")
     return drop
 
 
-def _in_slab(heights):
-    return ((heights > SLAB[0]) & (heights < SLAB[1])).sum(axis=-1)
+def measure_fraction(view):
+    """Packing fraction of the structure region in flow, an Estimate."""
+    fraction = fractions(view.run)
+    if not np.isfinite(fraction[view.snapshots]).all():
+        raise CalibrationError(f"the packing is too low: it ends within the structure region or {RDF_RANGE:g} d above")
+    return estimate_snapshots(view, np.column_stack([fraction, np.ones(len(fraction))]),
+                              lambda sums: sums[..., 0] / sums[..., 1])

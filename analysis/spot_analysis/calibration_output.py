@@ -9,6 +9,7 @@ import numpy as np
 from .calibration import STEP_HEIGHT, SYMBOLS, UNITS
 from .calibration_estimate import combine
 from .counts import SLAB
+from .particle_diffusion import DROPS
 
 IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "speed": "*v_d/v_tau", "injection": "/v_tau"}
 
@@ -55,8 +56,8 @@ def as_json(measured, parameters, uncorrected, response, source):
     speed, b_s = (float(parameters[name].value) for name in ("speed", "diffusion"))
     content = {
         "source": source,
-        "interval": {"from": measured.tracks.span[0], "to": measured.tracks.span[1], "unit": "tau",
-                     "snapshots": len(measured.tracks.times)},
+        "interval": {"from": measured.view.interval.start, "to": measured.view.interval.end, "unit": "tau",
+                     "snapshots": len(measured.view.snapshots)},
         "parameters": {name: described(parameters[name], unit) for name, unit in UNITS.items()},
         "uncorrected": {name: described(uncorrected[name], unit) for name, unit in UNITS.items()},
         "response": {name: described(value, "d" if name in ("radius", "particle_diffusion") else "1")
@@ -67,22 +68,18 @@ def as_json(measured, parameters, uncorrected, response, source):
             "outflow": described(measured.outflow, "1/tau"),
             f"grains_missing_{SLAB[0]}d_{SLAB[1]}d": described(measured.drop, "grains"),
             "front_speed": _front(measured.front),
-            "correlation_decay": described(correlation.decay, "d"),
+            "correlation_decay": described(correlation.decay[1], "d"),
             "correlation_radius": described(correlation.radius, "d"),
-            "correlation_radius_without_walls": described(correlation.bulk_radius, "d"),
             "correlation_amplitude": described(correlation.amplitude, "1"),
             "correlation_background": described(correlation.background, "1"),
             "particle_diffusion": described(diffusion.length, "d"),
             "grains_in_spot": described(measured.grains_in(parameters["radius"]), "grains"),
-            "grains_in_spot_formula": {"value": measured.grains_formula(float(parameters["radius"].value)), "error": None,
-                                       "unit": "grains"},
-            "diffusion_by": {name: described(combine(lambda value: value / 2, line[0]), "d")
-                             for name, line in spreading.lines.items()},
+            "packing_fraction": described(measured.fraction, "1"),
         },
         "curves": {
             "correlation": _curve(correlation.distance, correlation.curve),
-            "variance_of_profile": {name: _curve(spreading.heights, value) for name, value in spreading.variances.items()},
-            "sideways_variance": _curve(diffusion.drop, diffusion.variance),
+            "variance_of_profile": _curve(spreading.heights, spreading.variance),
+            "sideways_variance": _curve(DROPS, diffusion.variance),
         },
     }
     return json.dumps(content, indent=1) + "\n"

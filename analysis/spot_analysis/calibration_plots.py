@@ -11,15 +11,12 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 import numpy as np  # noqa: E402
 
 from .calibration_correlation import TOUCHING  # noqa: E402
-from .calibration_diffusion import DROPS  # noqa: E402
 from .calibration_estimate import combine  # noqa: E402
-from .calibration_spreading import METHODS  # noqa: E402
-from .counts import SLAB  # noqa: E402
+from .counts import SLAB, slab_counts  # noqa: E402
+from .particle_diffusion import DROPS  # noqa: E402
 
 DATA = {"color": "#1b4965", "marker": "o", "markersize": 3.5, "linestyle": "none", "capsize": 2, "linewidth": 1}
 FIT, SECOND_FIT = {"color": "#d1495b"}, {"color": "#f4a259", "linestyle": "--"}
-MARKERS = dict(zip(METHODS, ("s", "^", "D", "o")))
-COLOURS = dict(zip(METHODS, ("#8cb369", "#f4a259", "#5fa8d3", "#1b4965")))
 
 
 def draw(folder, measured):
@@ -39,7 +36,8 @@ def correlation(measured):
     figure, axis = plt.subplots(figsize=(6, 4), constrained_layout=True)
     axis.errorbar(found.distance, found.curve.value, found.curve.error, label="measured", **DATA)
     axis.plot(found.distance, found.form, label=f"spheres between walls, radius {_text(found.radius)} $d$", **FIT)
-    axis.plot(found.distance, found.exponential, label=rf"exponential, $\beta$ = {_text(found.decay)} $d$", **SECOND_FIT)
+    axis.plot(found.distance, found.decay.value[0] * np.exp(-found.distance / found.decay.value[1]),
+              label=rf"exponential, $\beta$ = {_text(found.decay[1])} $d$", **SECOND_FIT)
     axis.axvspan(found.distance[0] - 0.2, TOUCHING, color="0.92", zorder=0)
     axis.axhline(float(found.background.value), color="0.6", linewidth=0.8, linestyle=":")
     axis.set(xlabel="$r$ ($d$)", ylabel="$C(r)$", xlim=(found.distance[0] - 0.2, 6.1),
@@ -51,20 +49,15 @@ def correlation(measured):
 
 
 def spreading(measured):
-    """Variance of the v_z profile against height, by every method, with its line."""
+    """Variance of the spots against height, with its line."""
     found = measured.spreading
-    figure, axis = plt.subplots(figsize=(6, 4.4), constrained_layout=True)
+    figure, axis = plt.subplots(figsize=(6, 4), constrained_layout=True)
     reach = np.array([0, found.heights[-1] * 1.05])
-    for name, variance in found.variances.items():
-        slope, intercept = found.lines[name].value
-        half = found.lines[name][0]
-        label = f"{name.replace('_', ' ')}: slope/2 = {half.value / 2:.3f} $\\pm$ {half.error / 2:.3f} $d$"
-        style = {**DATA, "marker": MARKERS[name], "color": COLOURS[name]}
-        axis.errorbar(found.heights, variance.value, variance.error,
-                      label=label + (" (used)" if name == found.method else ""), **style)
-        axis.plot(reach, intercept + slope * reach, color=COLOURS[name], linewidth=1.6 if name == found.method else 0.8)
+    axis.errorbar(found.heights, found.variance.value, found.variance.error, label="of spots between walls", **DATA)
+    slope, intercept = found.line.value
+    axis.plot(reach, intercept + slope * reach, label=f"slope/2 = {_text(found.diffusion)} $d$", **FIT)
     axis.set(xlabel="$z$ ($d$)", ylabel="variance of the $v_z$ profile ($d^2$)", xlim=(0, None))
-    axis.legend(frameon=False, fontsize=8)
+    axis.legend(frameon=False)
     return figure
 
 
@@ -92,8 +85,8 @@ def diffusion(measured):
     """Var(dx) against the drop."""
     found = measured.diffusion
     figure, axis = plt.subplots(figsize=(6, 4), constrained_layout=True)
-    axis.errorbar(found.drop, 1e3 * found.variance.value, 1e3 * found.variance.error, label="measured", **DATA)
-    reach = np.array(DROPS)
+    axis.errorbar(DROPS, 1e3 * found.variance.value, 1e3 * found.variance.error, label="measured", **DATA)
+    reach = DROPS[[0, -1]]
     axis.plot(reach, 1e3 * (found.line.value[1] + found.line.value[0] * reach), label="$2 b_p\\,\\Delta z$ + const, "
               f"$b_p$ = ({1e3 * found.length.value:.2f} $\\pm$ {1e3 * found.length.error:.2f}) $10^{{-3}} d$", **FIT)
     axis.set(xlabel=r"drop $\Delta z$ ($d$)", ylabel=r"Var$(\Delta x)$ ($10^{-3} d^2$)", xlim=(0, None), ylim=(0, None))
@@ -103,17 +96,18 @@ def diffusion(measured):
 
 def flow(measured):
     """Outflow and grains in the slab against time, and the front that spots raise."""
-    tracks = measured.tracks
-    times = tracks.early_times
+    run, span = measured.view.run, measured.view.interval.span
+    shown = slice(measured.view.snapshots[-1] + 1)
+    times = run.times[shown]
     figure, (out, slab, front) = plt.subplots(1, 3, figsize=(11, 3.4), constrained_layout=True)
-    left = np.array([(z > 0).sum() for z in tracks.early_heights])
+    left = run.count_above(0)[shown]
     out.plot((times[1:] + times[:-1]) / 2, -np.diff(left) / np.diff(times), color=DATA["color"], marker=".", linewidth=0.8)
-    _level(out, tracks.span, measured.outflow, r"$F$ = {}$/\tau$")
+    _level(out, span, measured.outflow, r"$F$ = {}$/\tau$")
     out.set(xlabel=r"time ($\tau$)", ylabel=r"outflow (1/$\tau$)", ylim=(0, 1.1 * out.get_ylim()[1]))
-    counts = np.array([((z > SLAB[0]) & (z < SLAB[1])).sum() for z in tracks.early_heights])
+    counts = slab_counts(run)[shown]
     slab.plot(times, counts, color=DATA["color"], marker=".", linewidth=0.8)
     mean = combine(lambda drop: counts[0] - drop, measured.drop)
-    _level(slab, tracks.span, mean, f"{{}}\n$v_s$ = {_text(measured.speed)} $d/\\tau$")
+    _level(slab, span, mean, f"{{}}\n$v_s$ = {_text(measured.speed)} $d/\\tau$")
     slab.set(xlabel=r"time ($\tau$)", ylabel=f"grains in {SLAB[0]} $d$ < z < {SLAB[1]} $d$")
     if measured.front:
         found = measured.front

@@ -6,9 +6,11 @@ import shlex
 import subprocess
 import tempfile
 
+from . import run_statistics
 from .calibration import measure, parameters, response_of
 from .calibration_estimate import CalibrationError
 from .calibration_output import IN_THE_DECK, lammps_variables
+from .calibration_view import CONCEPTS
 from .interval import STEADY_FROM
 from .progress import Progress
 from .scene import load_scene
@@ -29,10 +31,11 @@ def refine(target, response, rounds, deck, lmp, duration, words="", warn=print, 
     for number in range(1, rounds + 1):
         put_in = {name: float(value.value) for name, value in present.items()}
         with tempfile.TemporaryDirectory(prefix="calibrate.") as folder:
-            run_deck(deck, lmp, lammps_variables(present, "the round before", target.tracks.span), folder, duration, words,
+            run_deck(deck, lmp, lammps_variables(present, "the round before", target.view.interval.span), folder, duration, words,
                      Progress(f"round {number}"))
             dumps = os.path.join(folder, "dumps")
-            run = measure(dumps, load_scene(dumps), STEADY_FROM, None, target.buffer, target.spreading.method, warn)
+            statistics = run_statistics.measure(dumps, load_scene(dumps), f"round {number}", warn=warn, concepts=CONCEPTS)
+            run = measure(statistics, STEADY_FROM, None, target.buffer)
         response = response_of(run, put_in, response["share"])
         present = parameters(target, response)
         report(f"round {number}: a run with " + ", ".join(f"{name} {value:.4g}" for name, value in put_in.items())

@@ -26,12 +26,12 @@ def scene_from_options(options, source, prefix=""):
     return load_scene(source, values[key + "scene"], overrides)
 
 
-def open_run(source, options, prefix, label):
-    """Statistics of ``source``: loaded if it is a statistics file, measured if it is dumps."""
+def open_run(source, options, prefix, label, concepts=run_statistics.CONCEPTS):
+    """Statistics of ``source``: loaded if it is a statistics file, measured if it is dumps; then of ``concepts`` only."""
     if os.path.isfile(source) and source.endswith(".npz"):
         return run_statistics.load(source)
     scene = scene_from_options(options, source, prefix)
-    return run_statistics.measure(source, scene, label, warn=print_warning)
+    return run_statistics.measure(source, scene, label, warn=print_warning, concepts=concepts)
 
 
 def print_warning(text):

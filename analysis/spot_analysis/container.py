@@ -42,16 +42,17 @@ class Container:
 
 @dataclass(frozen=True)
 class Region:
-    """The box |x| < half_width, bottom < z < top, from wall to wall in y."""
+    """The box |x| < half_width, bottom < z < top, |y| < half_depth: from wall to wall by default."""
 
     half_width: float
     bottom: float
     top: float
+    half_depth: float = np.inf
 
     def contains(self, positions, margin=0.0):
         """(n,) bool: centres inside, or within ``margin`` of it along x and z."""
-        x, _, z = positions.T
-        return ((np.abs(x) < self.half_width + margin)
+        x, y, z = positions.T
+        return ((np.abs(x) < self.half_width + margin) & (np.abs(y) < self.half_depth)
                 & (z > self.bottom - margin) & (z < self.top + margin))
 
     def area(self):

@@ -3,10 +3,11 @@
 
 from . import plots, plots_flow, plots_structure
 from .bonds import BOND_CUTOFF
+from .mean_flow import HALF_WIDTH, WALL_LAYER
 from .mixing import LAYER
 from .run_statistics import LAYER_HEIGHT
 from .stagnation import SHARE
-from .velocity_correlation import BOTTOM, HALF_WIDTH, TOP
+from .velocity_correlation import BOTTOM, TOP
 
 SECTIONS = {
     "The figures of 2006": {
@@ -17,7 +18,8 @@ SECTIONS = {
         "profile_variance": (plots_flow.profile_variance, "Variance of the Gaussian fits against height, with lines "
                              "fitted over the shaded heights: slope 2 b_s for free spots."),
         "velocity_correlation": (plots_flow.correlation, f"C(r) of x-velocities about the mean flow, |x| < {HALF_WIDTH:g} d, "
-                                 f"{BOTTOM:g} d < z < {TOP:g} d, and alpha exp(-r/beta) fitted over 1-6 d."),
+                                 f"{BOTTOM:g} d < z < {TOP:g} d, more than {WALL_LAYER:g} d from the walls in y, and "
+                                 "alpha exp(-r/beta) fitted over 1-6 d."),
         "particle_diffusion": (plots_flow.diffusion, "Variance of x about the mean flow against the height that grains "
                                "dropped; the slope over 1-5 d is 2 b_p."),
         "density_drop": (plots.density_drop, "Grains in the slab in which 2006 measures the density drop."),

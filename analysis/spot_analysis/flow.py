@@ -39,20 +39,3 @@ def velocity_profile(start, end, duration, heights, edges):
         counts.append(np.histogram(x, edges)[0])
         sums.append(np.histogram(x, edges, weights=speed[inside])[0])
     return np.array(counts), np.array(sums)
-
-
-def profile_variance(counts, sums, edges, half_width):
-    """Variance in x of the velocity profile, its second moment about its mean over |x| < half_width, d^2.
-
-    counts, sums : (..., k) of ``velocity_profile``, added over time; not a number where a bin is empty
-
-    Bins of width b add b^2/12, which is left in.
-    """
-    centres = (edges[:-1] + edges[1:]) / 2
-    kept = np.abs(centres) < half_width
-    x = centres[kept]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        velocity = sums[..., kept] / counts[..., kept]
-        total = velocity.sum(axis=-1)
-        mean = (velocity * x).sum(axis=-1) / total
-        return (velocity * x**2).sum(axis=-1) / total - mean**2

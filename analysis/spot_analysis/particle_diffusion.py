@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """b_p: diffusion length of the grains, half the slope of the variance of x against the height they dropped (2006).
 
-In a step between snapshots LAG_TAU apart a grain moves by dx and drops by h. The mean flow would take it h g(x, z) aside,
-with the inclination g = sum_k c_k f_k(x, z) of the streamlines; since h is the grain's own drop, neither pulses of the
-flow nor its profile across the thickness come in. c_k are fitted by least squares to all steps of the interval.
-
-Stored are sums of products of w = (dx, h f_1, ..., h f_m) at one step and at the step l later of the same grain. With
-q = (1, -c) these give the autocovariances c_l of what the mean flow leaves, for any choice of times, and from them
+Stored are the sums that ``mean_flow`` speaks of, over a grain at one step and at the step l later. They give the
+autocovariances c_l of what the mean flow leaves, for any choice of times, and from them
 
     Var_m = m c_0 + 2 sum_{l < m} (m - l) c_l
 
@@ -17,46 +13,15 @@ from collections import deque
 
 import numpy as np
 
-from .container import Region
 from .fits import fit_line
 from .flow import common_grains
+from .mean_flow import COVER, UPPER, Step, about_mean_flow, core, triangles
 from .snapshot import LAG_TAU, TIME_TOLERANCE
 
 NAME = "particle_diffusion"
 DROPS = np.arange(1.0, 6.0)  # d; below, grains rattle in their cages
 LAGS = 14  # steps in which grains drop by 5 d, with some to spare
-HALF_WIDTH = 8.0  # d
-BOTTOM, TOP = 25.0, 66.0  # lower down streamlines converge too fast to take the mean flow out
-TERMS = 6
-SIZE = TERMS + 1
-UPPER = np.triu_indices(SIZE)
-
-
-def diffusion_region(container):
-    return Region(min(HALF_WIDTH, 0.6 * container.half_width), BOTTOM, TOP)
-
-
-def inclination_terms(x, z, region):
-    """f_k at (n,) places; (n, TERMS), each about 1 at the border of the region."""
-    u, v = x / region.half_width, 2 * (z - region.bottom) / (region.top - region.bottom) - 1
-    return np.stack([np.ones_like(u), u, u * v, u * v**2, u**3, u**3 * v], axis=1)
-
-
-class Step:
-    """All grains near the region over one step: ids (n,), w (n, SIZE), and which middles are inside."""
-
-    def __init__(self, start, end, region):
-        first, second = common_grains(start.ids, end.ids)
-        moved = end.positions[second] - start.positions[first]
-        middle = start.positions[first] + moved / 2
-        near = (middle[:, 2] > region.bottom - 8) & (middle[:, 2] < region.top) & (np.abs(middle[:, 0]) < 2 * region.half_width)
-        moved, middle = moved[near], middle[near]
-        self.start, self.end = start.time, end.time
-        self.ids = start.ids[first][near]
-        self.inside = region.contains(middle)
-        terms = inclination_terms(middle[:, 0], middle[:, 2], region)
-        self.w = np.column_stack([moved[:, 0], -moved[:, 2:] * terms])
-        self.fallen = float(-moved[self.inside, 2].sum())
+BOTTOM, TOP = 25.0, 66.0  # d; lower down streamlines converge too fast to take the mean flow out
 
 
 def lagged_moments(step, later):
@@ -64,8 +29,7 @@ def lagged_moments(step, later):
     their number."""
     ids, w = step.ids[step.inside], step.w[step.inside]
     first, second = common_grains(ids, later.ids)
-    moments = w[first].T @ later.w[second]
-    return ((moments + moments.T) / 2)[UPPER], len(first)
+    return triangles(w[first].T @ later.w[second]), len(first)
 
 
 class Measurement:
@@ -75,7 +39,7 @@ class Measurement:
     """
 
     def __init__(self, container, region):
-        self._region = diffusion_region(container)
+        self._region = core(container, BOTTOM, TOP)
         self._recent = deque(maxlen=LAGS * 4)
         self._rows = {}
 
@@ -85,7 +49,7 @@ class Measurement:
             return
         newest = Step(start, snapshot, self._region)
         self._recent.append(newest)
-        if self._region.is_covered(snapshot.positions, 4.0):
+        if self._region.is_covered(snapshot.positions, COVER):
             self._rows[newest.start] = (newest.end, np.zeros(LAGS, dtype=np.int64),
                                         np.zeros((LAGS, len(UPPER[0]))), newest.fallen)
         for step in self._recent:
@@ -102,7 +66,7 @@ class Measurement:
         return {"start": np.array(list(self._rows)), **named}
 
 
-def _columns(part, end):
+def columns(part, end):
     """(P, f): the arrays side by side, without the steps that end after ``end``."""
     known = part.start[:, None] + LAG_TAU * np.arange(1, LAGS + 1) <= end + TIME_TOLERANCE
     return np.hstack([part.fallen[:, None] * known[:, :1], part.grains * known,
@@ -110,17 +74,11 @@ def _columns(part, end):
 
 
 def variances(sums):
-    """Variance of x about the mean flow after each of DROPS, (..., D), d^2, from summed ``_columns`` (..., f)."""
+    """Variance of x about the mean flow after each of DROPS, (..., D), d^2, from summed ``columns`` (..., f)."""
     fallen, grains, moments = np.split(sums, [1, 1 + LAGS], axis=-1)
-    triangles = moments.reshape(*moments.shape[:-1], LAGS, len(UPPER[0]))
-    matrices = np.zeros((*triangles.shape[:-1], SIZE, SIZE))
-    matrices[..., UPPER[0], UPPER[1]] = triangles
-    matrices[..., UPPER[1], UPPER[0]] = triangles
-    own = matrices[..., 0, :, :]
-    c = np.einsum("...ij,...j->...i", np.linalg.pinv(own[..., 1:, 1:], hermitian=True), own[..., 1:, 0])
-    q = np.concatenate([np.ones((*c.shape[:-1], 1)), -c], axis=-1)
+    moments = moments.reshape(*moments.shape[:-1], LAGS, len(UPPER[0]))
     with np.errstate(invalid="ignore", divide="ignore"):
-        covariance = np.einsum("...i,...lij,...j->...l", q, matrices, q) / grains
+        covariance = about_mean_flow(moments[..., 0, :], moments) / grains
         drop = fallen[..., 0] / grains[..., 0]
     steps, lag = np.arange(1, LAGS + 1)[:, None], np.arange(LAGS)
     weights = np.where(lag < steps, (steps - lag) * np.where(lag == 0, 1, 2), 0)
@@ -154,10 +112,10 @@ def mean_variances(view):
     """The variances over the interval, (D,); None without data."""
     part = view.run.measured[NAME]
     rows = view.pair_rows(part.start, part.end)
-    return variances(_columns(part, view.interval.end)[rows].sum(axis=0)) if len(rows) else None
+    return variances(columns(part, view.interval.end)[rows].sum(axis=0)) if len(rows) else None
 
 
 def quantities(view):
     part = view.run.measured[NAME]
-    columns = _columns(part, view.interval.end)
-    return {"particle_diffusion": view.estimate_pairs("d", part.start, part.end, columns, diffusion_length)}
+    return {"particle_diffusion": view.estimate_pairs("d", part.start, part.end, columns(part, view.interval.end),
+                                                      diffusion_length)}

@@ -56,7 +56,7 @@ def profile_variance(views):
 def correlation(views):
     """C(r) with the fitted exponentials."""
     figure, axis = plt.subplots(figsize=(4.5, 3.4), constrained_layout=True)
-    r = np.linspace(*velocity_correlation.FITTED, 100)
+    r = np.linspace(velocity_correlation.EDGES[0], velocity_correlation.EDGES[-1], 100)
     for name, view in views.items():
         curve = velocity_correlation.mean_correlation(view)
         if curve is None:

@@ -7,7 +7,6 @@ A spot that walks freely spreads as Var(x) = 2 b_s z, so half the slope of the l
 import numpy as np
 
 from .fits import fit_gaussian, fit_line
-from .flow import profile_variance
 
 HEIGHTS = (10, 20, 30, 40, 50, 60)  # d, reported
 MOMENTS = (10, 30, 50)  # d; second moments, which the shape of the tails enters
@@ -15,23 +14,46 @@ LINE = (10, 40)  # d; heights that the line is fitted through
 WALL = 1.0  # d left out at each wall
 
 
-def gaussian_variance(counts, sums, edges):
-    """Variance of the Gaussian, centred on the axis, that fits the profile of mean downward velocity, (...) d^2.
+def kept_bins(edges):
+    """(X,) bool: bins that are not within WALL of a wall."""
+    return np.abs(edges[1:] + edges[:-1]) / 2 < edges[-1] - WALL
+
+
+def in_line(heights):
+    """(h,) bool: heights that the line is fitted through."""
+    return (heights >= LINE[0]) & (heights <= LINE[1])
+
+
+def _velocities(counts, sums, edges):
+    """Places (X,) and mean downward velocities (..., X) of the bins that are kept, not a number where they are empty.
 
     counts, sums : (..., X) of ``flow.velocity_profile``, added over time
-
-    All bins weigh the same; those within WALL of a wall are left out.
     """
-    x = (edges[1:] + edges[:-1]) / 2
-    kept = np.abs(x) < edges[-1] - WALL
+    kept = kept_bins(edges)
     with np.errstate(invalid="ignore", divide="ignore"):
-        velocity = sums[..., kept] / counts[..., kept]
-    return fit_gaussian(x[kept], velocity)[1]**2
+        return ((edges[1:] + edges[:-1]) / 2)[kept], sums[..., kept] / counts[..., kept]
+
+
+def moment(x, velocity):
+    """Second moment in x (X,) about the mean of profiles (..., X); bins of width b add b^2/12, which is left in."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        total = velocity.sum(axis=-1)
+        return (velocity * x**2).sum(axis=-1) / total - ((velocity * x).sum(axis=-1) / total)**2
+
+
+def moment_variance(counts, sums, edges):
+    """``moment`` of the profile of mean downward velocity, (...) d^2."""
+    return moment(*_velocities(counts, sums, edges))
+
+
+def gaussian_variance(counts, sums, edges):
+    """Variance of the Gaussian, centred on the axis, that fits this profile, (...) d^2; all bins weigh the same."""
+    return fit_gaussian(*_velocities(counts, sums, edges))[1]**2
 
 
 def line(heights, variances):
     """slope, intercept through the variances (..., h) at heights within LINE."""
-    used = (heights >= LINE[0]) & (heights <= LINE[1])
+    used = in_line(heights)
     return fit_line(heights[used], variances[..., used])
 
 
@@ -45,14 +67,8 @@ def mean_variances(view):
 
 def quantities(view):
     run = view.run
-    heights, edges = run.profile_heights, run.profile_edges
-    used = np.flatnonzero((heights >= LINE[0]) & (heights <= LINE[1]))
-
-    def moment(counts, sums):
-        return profile_variance(counts, sums, edges, edges[-1] - WALL)
-
-    def gaussian(counts, sums):
-        return gaussian_variance(counts, sums, edges)
+    heights = run.profile_heights
+    used = np.flatnonzero(in_line(heights))
 
     def at(z, width):
         return _estimate(view, "d^2", [np.searchsorted(heights, z)], width, lambda variances: variances[..., 0])
@@ -60,19 +76,19 @@ def quantities(view):
     def line_of(unit, width, part):
         return _estimate(view, unit, used, width, lambda variances: fit_line(heights[used], variances)[part])
 
-    return {**{f"profile_variance_{z}d": at(z, moment) for z in MOMENTS},
-            "profile_variance_slope": line_of("d", moment, 0),
-            **{f"gaussian_variance_{z}d": at(z, gaussian) for z in HEIGHTS},
-            "variance_slope": line_of("d", gaussian, 0), "variance_intercept": line_of("d^2", gaussian, 1)}
+    return {**{f"profile_variance_{z}d": at(z, moment_variance) for z in MOMENTS},
+            "profile_variance_slope": line_of("d", moment_variance, 0),
+            **{f"gaussian_variance_{z}d": at(z, gaussian_variance) for z in HEIGHTS},
+            "variance_slope": line_of("d", gaussian_variance, 0), "variance_intercept": line_of("d^2", gaussian_variance, 1)}
 
 
 def _estimate(view, unit, indices, width, statistic):
     """Value of ``statistic``, which maps the variances (..., h) of profiles number ``indices`` to (...); ``width`` maps
-    counts and sums (..., h, X) to variances."""
+    counts and sums (..., h, X) and edges to variances."""
     run = view.run
 
     def of_sums(sums):
-        return statistic(width(*np.split(sums.reshape(*sums.shape[:-1], 2 * len(indices), -1), 2, axis=-2)))
+        return statistic(width(*np.split(sums.reshape(*sums.shape[:-1], 2 * len(indices), -1), 2, axis=-2), run.profile_edges))
 
     columns = np.concatenate([run.profile_counts[:, indices], run.profile_sums[:, indices]], axis=1)
     columns = columns.reshape(len(columns), 2 * len(indices) * (len(run.profile_edges) - 1))
@@ -90,7 +106,6 @@ def mean_profile(view, index):
 def fitted_gaussian(view, index, x):
     """The Gaussian that fits this profile, at x (k,)."""
     edges = view.run.profile_edges
-    middle = (edges[1:] + edges[:-1]) / 2
-    kept = np.abs(middle) < edges[-1] - WALL
-    amplitude, width = fit_gaussian(middle[kept], mean_profile(view, index)[kept])
+    kept = kept_bins(edges)
+    amplitude, width = fit_gaussian(((edges[1:] + edges[:-1]) / 2)[kept], mean_profile(view, index)[kept])
     return amplitude * np.exp(-x**2 / (2 * width**2))

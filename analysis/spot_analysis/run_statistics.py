@@ -21,7 +21,7 @@ from .progress import Progress
 from .scene import Scene
 from .snapshot import LAG_TAU, TIME_TOLERANCE, History, Snapshot
 
-FORMAT = "spot-analysis run statistics 2"
+FORMAT = "spot-analysis run statistics 3"
 # Each has a NAME and a class Measurement: add(snapshot, history) for each snapshot in turn, then arrays(), which go to
 # RunStatistics.measured[NAME].
 CONCEPTS = (velocity_correlation, particle_diffusion, bond_angles, bond_order, free_surface, thickness, voronoi,
@@ -146,17 +146,18 @@ def _roomy(array):
     return array.astype(np.int64) if array.dtype.kind in "iu" else array.astype(np.float64)
 
 
-def measure(source, scene, label="dumps", provenance=None, warn=print):
+def measure(source, scene, label="dumps", provenance=None, warn=print, concepts=CONCEPTS):
     """Measure the dumps ``source`` (see ``dump.find_dumps``).
 
     label : for the progress lines
     warn : called with a line for each frame that is left out
+    concepts : those of CONCEPTS to measure
 
     Raises DumpError, SceneError.
     """
     files = len(find_dumps(source))
     progress = Progress(label)
-    recorder = _Recorder(scene)
+    recorder = _Recorder(scene, concepts)
     for number, frame in enumerate(read_frames(source, extra=("radius",), warn=warn), 1):
         recorder.add(frame)
         total = f" of {files}" if files > 1 else ""
@@ -174,13 +175,13 @@ def measure(source, scene, label="dumps", provenance=None, warn=print):
 class _Recorder:
     """Collects the statistics while frames go by; keeps those of the last LAG_TAU only."""
 
-    def __init__(self, scene):
+    def __init__(self, scene, concepts):
         self.times = []
         self._scene = scene
         self._container = scene.container()
         self._region = structure_region(self._container)
         self._history = History(LAG_TAU)
-        self._concepts = {one.NAME: one.Measurement(self._container, self._region) for one in CONCEPTS}
+        self._concepts = {one.NAME: one.Measurement(self._container, self._region) for one in concepts}
         self._snapshots = []
         self._profiles = []
         self._pictures = []

@@ -9,8 +9,10 @@ import sys
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-from spot_analysis import calibration, calibration_output, calibration_refinement, calibration_response
+from spot_analysis import (calibration, calibration_output, calibration_refinement, calibration_response, calibration_view,
+                           run_statistics)
 from spot_analysis.calibration_estimate import CalibrationError, Estimate
+from spot_analysis.scene import load_scene
 
 from conftest import ANALYSIS
 
@@ -89,27 +91,26 @@ def test_known_parameters(result):
     slack = np.sqrt(MISSING + 2 * FLOW) / MISSING  # of points that fell out of the slab and into it
     near(found["speed"], FLOW * 20 / MISSING, slack * FLOW * 20 / MISSING)
     assert measured["correlation_amplitude"]["value"] == pytest.approx(1, abs=0.1)
-    assert measured["correlation_radius_without_walls"]["value"] > found["radius"]["value"]
 
 
 def test_kicks_give_the_influence(result):
     """Var(dx) of a step of 2 tau over twice the drop, in the core; w is that over b_s, and nu_s = F / (w <N>)."""
     content = result[1]
     found, measured = content["parameters"], content["measured"]
-    variance = content["curves"]["sideways_variance"]
+    drop = -2 * flow_of_spots(*np.meshgrid(np.linspace(-8, 8, 101), np.linspace(25, 66, 101)))[1].mean()
     sphere = 4 / 3 * np.pi * RADIUS**3
     kicked = KICKS * KICK**2 * sphere / np.prod(KICKED[1] - KICKED[0])
-    near(measured["particle_diffusion"], kicked / (2 * variance["at"][0]), 0.05 * kicked)
+    near(measured["particle_diffusion"], kicked / (2 * drop), 0.05 * kicked)
     assert found["influence"]["value"] == pytest.approx(
         measured["particle_diffusion"]["value"] / found["diffusion"]["value"])
     assert found["injection"]["value"] == pytest.approx(
         measured["outflow"]["value"] / (found["influence"]["value"] * measured["grains_in_spot"]["value"]))
-    assert measured["grains_in_spot"]["value"] == pytest.approx(measured["grains_in_spot_formula"]["value"], rel=0.03)
+    assert measured["grains_in_spot"]["value"] == pytest.approx(DENSITY * sphere * 0.957, rel=0.03)
 
 
 def test_progress_and_table(result):
     done = result[0]
-    assert "calibrating on 16, 40 to 70 tau" in done.stderr and "all fits done" in done.stderr
+    assert "17 snapshots measured" in done.stderr and "40 to 70 tau, 16 snapshots" in done.stdout
     for symbol in ("R_s", "w", "b_s", "v_s", "nu_s"):
         assert f"\n{symbol} " in done.stdout
 
@@ -160,8 +161,8 @@ def test_packing_at_rest_is_refused(dumps, tmp_path):
 
 @pytest.fixture(scope="module")
 def measured(dumps):
-    from spot_analysis.scene import load_scene
-    return calibration.measure(str(dumps), load_scene(str(dumps)))
+    run = run_statistics.measure(str(dumps), load_scene(str(dumps)), concepts=calibration_view.CONCEPTS)
+    return calibration.measure(run)
 
 
 def test_response_undoes_itself(measured):

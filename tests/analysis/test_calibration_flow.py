@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Choice of snapshots, outflow and steadiness, density drop, front, and grains in a spot."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from spot_analysis import calibration_flow as flow
 from spot_analysis import calibration_spot_grains as spot_grains
-from spot_analysis import calibration_tracks as tracks_module
-from spot_analysis.calibration_estimate import CalibrationError, Estimate
+from spot_analysis.calibration_estimate import CalibrationError
 from spot_analysis.calibration_front import measure_front
-from spot_analysis.calibration_tracks import Tracks, choose_snapshots, find_core, surface_height
+from spot_analysis.calibration_view import choose_snapshots, view_of
 from spot_analysis.container import Container
 
 SILO = Container(25.0, 4.0, 4.0)
 TIMES = np.arange(40, 92.1, 2.0)
+
+
+def run_of(times, heights):
+    """What is asked of a RunStatistics here; heights : those of the grains in each snapshot."""
+    return SimpleNamespace(times=times, count_above=lambda level: np.array([(z > level).sum() for z in heights]))
 
 
 def plug(rate=70.0, shape=lambda time: 1.0, missing=400, height=100.0, above=1.0):
@@ -26,10 +32,8 @@ def plug(rate=70.0, shape=lambda time: 1.0, missing=400, height=100.0, above=1.0
     at_rest = np.vstack([points, rng.uniform([-25, -4, 50], [25, 4, 70], (missing, 3))])
     fallen = np.concatenate([[0], np.cumsum([2 * rate / 440 * shape(time) for time in TIMES[1:]])])
     share = np.where(points[:, 2] > 30, above, 1.0)
-    positions = np.array([points - np.outer(share, [0, 0, drop]) for drop in fallen])
-    positions[positions[..., 2] < -10] = np.nan
-    early = np.concatenate([[0.0], TIMES])
-    return Tracks(SILO, TIMES, positions, at_rest, early, [at_rest[:, 2], *positions[..., 2]])
+    heights = [points[:, 2] - share * drop for drop in fallen]
+    return view_of(run_of(np.concatenate([[0.0], TIMES]), [at_rest[:, 2], *heights]), 40)
 
 
 def test_longest_stretch_of_snapshots():
@@ -51,18 +55,14 @@ def test_too_few_snapshots_are_refused():
         choose_snapshots(np.arange(0, 100, 5.0), 40)
 
 
-def test_core_lies_below_the_surface():
-    assert find_core(plug()).top == 66
-    low = plug(height=65.0)
-    surface = surface_height(low.frame(-1), SILO)
-    assert find_core(low).top == pytest.approx(surface - tracks_module.SURFACE_MARGIN)
-    with pytest.raises(CalibrationError, match="the packing is too low: its surface is at z = 3[0-9] d at 92 tau"):
-        find_core(plug(height=45.0))
+def test_start_is_needed():
+    with pytest.raises(CalibrationError, match="the first snapshot is at t = 40 tau; v_s needs the packing at rest"):
+        view_of(run_of(TIMES, []))
 
 
 def test_known_outflow_and_drop():
-    tracks = plug()
-    outflow, drop = flow.measure_outflow(tracks), flow.measure_drop(tracks)
+    view = plug()
+    outflow, drop = flow.measure_outflow(view), flow.measure_drop(view)
     assert outflow.value == pytest.approx(70, abs=max(3 * outflow.error, 0.5))
     assert drop.value == pytest.approx(400, abs=5)
 
@@ -89,19 +89,9 @@ def test_front_of_known_speed():
     points = np.random.default_rng(0).uniform(0, 110, 48400)
     times = np.arange(0, 42, 2.0)
     heights = [points - 70 / 440 * np.maximum(times[step] - points / 3, 0) for step in range(len(times))]
-    tracks = Tracks(SILO, TIMES, np.empty((0, 0, 3)), np.empty((0, 3)), times, heights)
-    front = measure_front(tracks, 70.0)
+    front = measure_front(run_of(times, heights), 70.0)
     assert front.speed == pytest.approx(3.0, rel=0.03) and front.error < 0.2
-    thinned = Tracks(SILO, TIMES, np.empty((0, 0, 3)), np.empty((0, 3)), times[[0, 5, 10]], heights[::10])
-    assert measure_front(thinned, 70.0) is None
-
-
-def test_spots_stay_where_spots_may_go():
-    places = spot_grains.spot_places(np.random.default_rng(0), 20000, SILO, (10.0, 100.0), 1.0)
-    assert np.abs(places[:, 0]).max() <= 24 and np.abs(places[:, 1]).max() <= 3
-    assert places[:, 2].min() >= 15 and places[:, 2].max() <= 60
-    narrow = spot_grains.spot_places(np.random.default_rng(0), 20000, SILO, (0.0, 25.0), 1.0)
-    assert narrow[:, 0].std() == pytest.approx(5, rel=0.03)
+    assert measure_front(run_of(times[[0, 5, 10]], heights[::10]), 70.0) is None
 
 
 def test_walls_cut_the_spots():
@@ -110,13 +100,13 @@ def test_walls_cut_the_spots():
     assert spot_grains.cut_share(SILO, 1.0, 1.0) == 1
 
 
-def test_grains_in_a_spot_against_the_formula():
-    tracks = plug()
-    table = spot_grains.measure_spot_grains(tracks, (2.5, 0.0), 1.0)
-    for radius in (2.0, 2.6, 3.1):
-        exact = Estimate(np.array(radius), np.full(1000, radius))
-        found = spot_grains.grains_within(table, exact)
-        volume = 4 / 3 * np.pi * radius**3
-        assert found.value == pytest.approx(440 / 400 * volume * spot_grains.cut_share(SILO, radius, 1.0), rel=0.02)
-        scattered = Estimate(np.array(radius), radius * (1 + 0.01 * np.random.default_rng(0).normal(size=1000)))
-        assert spot_grains.grains_within(table, scattered).error > 0.02 * found.value  # grows as R^3 and less at the walls
+def test_grains_in_a_spot():
+    """2006 without walls; and points at random in spheres even in |y| < 3 d between the walls, to 1 %."""
+    assert spot_grains.spot_grains(0.579, 2.6, Container(25, 40, 4), 3.0) == pytest.approx(81.7, rel=0.005)
+    rng = np.random.default_rng(0)
+    points = rng.uniform([-3, -4, -3], [3, 4, 3], (40000, 3))
+    centres = np.column_stack([np.zeros(400), np.linspace(-3, 3, 400), np.zeros(400)])
+    counted = np.mean([(((points - centre)**2).sum(axis=1) < 2.6**2).sum() for centre in centres])
+    fraction = 40000 / 288 * np.pi / 6
+    found = spot_grains.spot_grains(np.array([fraction, 2 * fraction]), np.array([2.6, 2.6]), SILO, 1.0)
+    np.testing.assert_allclose(found, [counted, 2 * counted], rtol=0.01)

@@ -5,7 +5,8 @@ import os
 
 import numpy as np
 import pytest
-from spot_analysis import calibration, calibration_output, calibration_refinement, calibration_response
+from spot_analysis import (calibration, calibration_output, calibration_refinement, calibration_response, calibration_view,
+                           run_statistics)
 from spot_analysis.bootstrap import RESAMPLES
 from spot_analysis.calibration_estimate import Estimate
 from spot_analysis.progress import Progress
@@ -28,7 +29,7 @@ def test_planted_parameters_lie_within_their_error_bars(tmp_path):
     calibration_refinement.run_deck(str(ROOT / "examples" / "silo" / "in.silo_spot"), LMP, variables, str(tmp_path), DURATION,
                                     WORDS, Progress("planted"))
     dumps = str(tmp_path / "dumps")
-    measured = calibration.measure(dumps, load_scene(dumps))
+    measured = calibration.measure(run_statistics.measure(dumps, load_scene(dumps), concepts=calibration_view.CONCEPTS))
     found = calibration.parameters(measured, calibration_response.stored_response("windowed"))
     print(calibration_output.table(found, planted))
     for name, value in PLANTED.items():

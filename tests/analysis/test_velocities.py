@@ -7,39 +7,35 @@ import numpy as np
 import pytest
 from spot_analysis import fits, particle_diffusion, profile_width, stagnation, velocity_correlation
 from spot_analysis.bootstrap import block_sums, bootstrap_error
+from spot_analysis.calibration_diffusion import fit_diffusion
+from spot_analysis.calibration_estimate import CalibrationError, estimate
 from spot_analysis.container import Container, Region
 from spot_analysis.flow import velocity_profile
+from spot_analysis.mean_flow import SIZE, UPPER, Step, about_mean_flow, core, inclination_terms, triangles
 
-from synthetic import measure
+from synthetic import make_snapshots, measure
 
 SILO = Container(25, 4, 4)
 REGION = Region(15, 15, 45)
-CORE = velocity_correlation.correlation_region(SILO)
-
-
-def mean_flow(points, amplitude):
-    """A field of the kind that is subtracted."""
-    x, z = points[:, 0] / CORE.half_width, (points[:, 2] - 58) / 8
-    return amplitude * (0.1 - 0.4 * x + 0.2 * x * z + 0.1 * x**3)
+CORE = core(SILO, velocity_correlation.BOTTOM, velocity_correlation.TOP)
 
 
 def correlated_frame(rng, points, beta, alpha, flow):
-    """Start and end of one step: v_x with covariance alpha exp(-r/beta) and a local part, v_z even."""
+    """w of grains at ``points``: dx with covariance alpha exp(-r/beta) and a local part, on ``flow`` times streamlines."""
     distance = np.linalg.norm(points[:, None] - points, axis=2)
     covariance = alpha * np.exp(-distance / beta) + (1 - alpha + 1e-9) * np.eye(len(points))
-    v = 0.02 * np.linalg.cholesky(covariance) @ rng.normal(size=len(points))
-    amplitude = rng.uniform(0.2, 0.4)
-    velocity = np.column_stack([v + flow * mean_flow(points, amplitude), 0 * v, np.full(len(v), -amplitude)])
-    return points - velocity, points + velocity  # 2 tau apart, middles at the points
+    dx = 0.02 * np.linalg.cholesky(covariance) @ rng.normal(size=len(points))
+    drop = rng.uniform(0.2, 0.4) * rng.uniform(0.7, 1.0, len(points))
+    x, _, z = points.T
+    return np.column_stack([dx + flow * drop * (0.6 - x / 2) / z, drop[:, None] * inclination_terms(x, z)])
 
 
 def sums_of_frames(rng, frames, beta, alpha, flow=1.0):
     """One row a frame, as the measurement stores them."""
     rows = []
     for _ in range(frames):
-        points = rng.uniform([-8, -4, 50], [8, 4, 66], (400, 3))
-        grains, own, pairs, joint = velocity_correlation.frame_sums(*correlated_frame(rng, points, beta, alpha, flow), 2.0,
-                                                                    CORE)
+        points = rng.uniform([-8, -2.5, 50], [8, 2.5, 66], (400, 3))
+        grains, own, pairs, joint = velocity_correlation.frame_sums(points, correlated_frame(rng, points, beta, alpha, flow))
         rows.append(np.concatenate([[grains], own, pairs, joint.ravel()]))
     return np.array(rows)
 
@@ -58,11 +54,12 @@ def test_known_correlation_is_recovered(beta, alpha):
     assert found_alpha == pytest.approx(alpha, rel=0.3)
     # bins of 0.25 d hold the mean over the shell, which is not that at its middle: 0.5 %
     expected = alpha * np.exp(-velocity_correlation.middles() / beta)
-    assert np.abs(curve - expected)[velocity_correlation.fitted()].max() < 0.06
+    assert np.abs(curve - expected).max() < 0.06
 
 
-def test_mean_flow_of_changing_amplitude_leaves_no_trace():
-    """The same fluctuations with and without a mean flow ten times as fast."""
+def test_streamlines_of_a_free_walk_leave_no_trace():
+    """The same fluctuations with and without a mean flow ten times as fast, whose drop swings and differs from grain to
+    grain."""
     with_flow, without = (velocity_correlation.correlation(sums_of_frames(np.random.default_rng(2), 5, 1.5, 0.8, flow)
                                                            .sum(axis=0)) for flow in (1.0, 0.0))
     np.testing.assert_allclose(with_flow, without, atol=1e-7)
@@ -70,37 +67,41 @@ def test_mean_flow_of_changing_amplitude_leaves_no_trace():
 
 def test_frame_sums_equal_all_pairs():
     rng = np.random.default_rng(4)
-    start = rng.uniform([-10, -4, 48], [10, 4, 68], (200, 3))
-    end = start + rng.normal(0, 0.1, start.shape)
-    grains, own, pairs, joint = velocity_correlation.frame_sums(start, end, 2.0, CORE)
-    middle = (start + end) / 2
-    inside = CORE.contains(middle)
-    middle, v = middle[inside], ((end - start) / 2)[inside]
-    w = np.column_stack([v[:, 0], -v[:, 2].mean() * velocity_correlation.mean_flow_terms(middle[:, 0], middle[:, 2], CORE)])
+    middle, w = rng.uniform([-8, -2.5, 50], [8, 2.5, 66], (200, 3)), rng.normal(size=(200, SIZE))
+    grains, own, pairs, joint = velocity_correlation.frame_sums(middle, w)
     distance = np.linalg.norm(middle[:, None] - middle, axis=2)
     first, second = np.triu_indices(len(middle), 1)
     expected = np.zeros_like(joint)
     for i, j in zip(first, second):
-        place = int(distance[i, j] / 0.25)
-        if place < len(expected):
+        place = math.floor((distance[i, j] - 1) / 0.25)
+        if 0 <= place < len(expected):
             product = np.outer(w[i], w[j])
-            expected[place] += ((product + product.T) / 2)[velocity_correlation.UPPER]
-    assert grains == inside.sum()
+            expected[place] += ((product + product.T) / 2)[UPPER]
+    assert grains == 200
     np.testing.assert_array_equal(pairs, np.histogram(distance[first, second], velocity_correlation.EDGES)[0])
     np.testing.assert_allclose(joint, expected, atol=1e-12)
-    np.testing.assert_allclose(own, (w.T @ w)[velocity_correlation.UPPER])
+    np.testing.assert_allclose(own, (w.T @ w)[UPPER])
 
 
-def walk(rng, grains, steps, b, speed=0.25, inclination=0.0):
+def test_only_grains_of_the_core_count():
+    """Four grains fall by 0.5 d: one in the core, one at the wall in y, one beside and one above it."""
+    start = np.array([[7, 2, 60.0], [7, 3, 60], [9, 0, 60], [7, 0, 66.4]])
+    step = Step(*make_snapshots([start, start - [0, 0, 0.5]], [40, 42], SILO, REGION), CORE)
+    assert step.ids.tolist() == [1, 2, 3] and step.inside.tolist() == [True, False, False] and step.fallen == 0.5
+    with_margin = CORE.contains(start, margin=1.5)
+    assert with_margin.tolist() == [True, False, True, True]
+
+
+def walk(rng, grains, steps, b, speed=0.25, streamlines=0.0):
     """Grains of the diffusion region that fall at their own speeds and walk with variance 2 b a unit of height, on streamlines
-    of the inclination -dx/dz = -inclination x; (steps, grains, 3)."""
-    positions = [rng.uniform([-16, -4, 15], [16, 4, 74], (grains, 3))]
+    x ~ z^(streamlines), 1/2 for a free walk of spots; (steps, grains, 3)."""
+    positions = [rng.uniform([-16, -2.5, 15], [16, 2.5, 74], (grains, 3))]
     own = speed * rng.uniform(0.6, 1.4, grains)
     for _ in range(steps - 1):
         fall = 2 * own * rng.uniform(0.7, 1.3)  # the flow pulses
         x, y, z = positions[-1].T
-        half = inclination * fall / 2  # the mean flow at the middle of the step
-        later = (x * (1 - half) + rng.normal(size=grains) * np.sqrt(2 * b * fall)) / (1 + half)
+        fall = np.minimum(fall, z - 1)
+        later = x * ((z - fall) / z)**streamlines + rng.normal(size=grains) * np.sqrt(2 * b * fall)
         positions.append(np.column_stack([later, y, z - fall]))
     return np.array(positions)
 
@@ -108,13 +109,13 @@ def walk(rng, grains, steps, b, speed=0.25, inclination=0.0):
 def diffusion_sums(packings):
     times = 40 + 2.0 * np.arange(len(packings))
     part = measure(particle_diffusion, packings, times, SILO, REGION)
-    return part, particle_diffusion._columns(part, times[-1])
+    return part, particle_diffusion.columns(part, times[-1])
 
 
-@pytest.mark.parametrize("inclination", [0.0, 0.02])
-def test_known_diffusion_is_recovered(inclination):
+@pytest.mark.parametrize("streamlines", [0.0, 0.5])
+def test_known_diffusion_is_recovered(streamlines):
     """Streamlines, pulses and a spread of speeds leave no trace. The estimate scatters by 1.5 % from seed to seed."""
-    packings = walk(np.random.default_rng(6), 40000, 20, 2.5e-3, inclination=inclination)
+    packings = walk(np.random.default_rng(6), 40000, 20, 2.5e-3, streamlines=streamlines)
     _, columns = diffusion_sums(packings)
     assert particle_diffusion.diffusion_length(columns.sum(axis=0)) == pytest.approx(2.5e-3, rel=0.05)
 
@@ -126,6 +127,97 @@ def test_rattling_is_left_out():
     noisy = packings + rng.normal(0, 0.03, packings.shape) * [1, 0, 0]
     quiet, loud = (particle_diffusion.variances(diffusion_sums(some)[1].sum(axis=0)) for some in (packings, noisy))
     np.testing.assert_allclose(loud - quiet, 2 * 0.03**2, rtol=0.25)
+
+
+def test_streamlines_of_a_free_walk_leave_nothing():
+    """They move a grain by up to 0.1 d a step; what is left is a thousandth of a fluctuation's variance."""
+    _, columns = diffusion_sums(walk(np.random.default_rng(3), 4000, 20, 0.0, streamlines=0.5))
+    assert np.abs(particle_diffusion.variances(columns.sum(axis=0))).max() < 2e-5
+
+
+def test_rolling_along_the_walls_is_left_out():
+    """Grains within 1 d of a wall in y with ten times the variance change nothing."""
+    packings = walk(np.random.default_rng(6), 40000, 12, 2.5e-3, speed=0.4)
+    rolling = walk(np.random.default_rng(7), 20000, 12, 2.5e-2, speed=0.4)
+    rolling[..., 1] = np.where(rolling[..., 1] > 0, 3.5, -3.5)
+    with_walls = np.concatenate([packings, rolling], axis=1)
+    alone, both = (particle_diffusion.diffusion_length(diffusion_sums(some)[1].sum(axis=0)) for some in (packings, with_walls))
+    assert alone == pytest.approx(both, rel=1e-12) and alone == pytest.approx(2.5e-3, rel=0.08)
+
+
+def row_of_walkers(dx, drop=0.5):
+    """``columns`` of grains that stay at one place of the core, summed over time; dx : (steps, grains). (steps, f)"""
+    steps, grains = dx.shape
+    rows = np.zeros((steps, 1 + particle_diffusion.LAGS * (1 + len(UPPER[0]))))
+    counts, moments = rows[:, 1:1 + particle_diffusion.LAGS], rows[:, 1 + particle_diffusion.LAGS:]
+    moments = moments.reshape(steps, particle_diffusion.LAGS, len(UPPER[0]))
+    rows[:, 0] = grains * drop
+    for lag in range(particle_diffusion.LAGS):
+        counts[:steps - lag, lag] = grains
+        moments[:steps - lag, lag, 0] = (dx[:steps - lag] * dx[lag:]).sum(axis=1)
+    return rows
+
+
+def steps_of_walkers(rng, steps, grains, b_p, cage=0.0):
+    """Displacements (steps, grains) over drops of 0.5 d: diffusion b_p and a rattle of variance ``cage`` about it."""
+    rattle = rng.normal(0, np.sqrt(cage), (steps + 1, grains))
+    return rng.normal(0, np.sqrt(b_p), (steps, grains)) + np.diff(rattle, axis=0)
+
+
+def fitted_diffusion(dx):
+    times = 41.0 + 2 * np.arange(len(dx))
+    return fit_diffusion(estimate(times, row_of_walkers(dx), (40.0, 40.0 + 2 * len(dx)), particle_diffusion.variances))
+
+
+@pytest.mark.parametrize("cage", [0.0, 1e-3])
+def test_a_cage_adds_a_constant_not_a_slope(cage):
+    """Within three standard errors."""
+    found = fitted_diffusion(steps_of_walkers(np.random.default_rng(0), 26, 2000, 2.5e-3, cage))
+    assert found.length.error < 1e-4
+    assert found.length.value == pytest.approx(2.5e-3, abs=3 * found.length.error)
+    assert found.line.value[1] == pytest.approx(2 * cage, abs=3 * found.line.error[1])
+
+
+def test_variance_against_the_obvious_way():
+    """Of the sums of successive displacements, when every path is complete; edges of the interval count differently."""
+    dx = steps_of_walkers(np.random.default_rng(1), 400, 50, 2.5e-3, 1e-3)
+    path = np.concatenate([np.zeros((1, 50)), np.cumsum(dx, axis=0)])
+    variances = particle_diffusion.variances(row_of_walkers(dx).sum(axis=0))
+    for drop, variance in zip(particle_diffusion.DROPS, variances):
+        steps = int(2 * drop)
+        assert variance == pytest.approx(((path[steps:] - path[:-steps])**2).mean(), rel=0.04)
+
+
+def test_errors_cover_the_truth():
+    """Paths overlap, blocks do not depend on each other: 2 SE should cover about 91 % (8 blocks); 4 deviations are 10 %."""
+    rng = np.random.default_rng(2)
+    found = [fitted_diffusion(steps_of_walkers(rng, 26, 60, 2.5e-3)).length for _ in range(150)]
+    covered = np.mean([abs(one.value - 2.5e-3) < 2 * one.error for one in found])
+    assert 0.79 < covered <= 1
+
+
+def test_grains_that_do_not_diffuse_are_refused():
+    with pytest.raises(CalibrationError, match="does not grow with the drop"):
+        fitted_diffusion(steps_of_walkers(np.random.default_rng(0), 20, 100, 0.0, cage=1e-3))
+
+
+def test_grains_that_leave_count_while_they_can_be_followed():
+    packings = np.repeat(np.random.default_rng(0).uniform([-4, -2, 27], [4, 2, 70], (1, 400, 3)), 7, axis=0)
+    packings += np.linspace(0, -1, 7)[:, None, None] * [0, 0, 1]
+    inside = int(((packings[0, :, 2] < 66) & (packings[0, :, 2] > 28)).sum())
+    packings[4:, np.argmin(np.abs(packings[0, :, 2] - 40))] = np.nan
+    part, _ = diffusion_sums(packings)
+    assert part.grains[0, :3].tolist() == part.grains[0, [0, 0, 0]].tolist() and part.grains[0, 0] >= inside
+    assert part.grains[0, 3] == part.grains[0, 4] == part.grains[0, 0] - 1
+    assert part.grains[-1].tolist() == [part.grains[-1, 0]] + 13 * [0]
+
+
+def test_fluctuations_about_a_known_mean_flow():
+    """q.M.q of ``about_mean_flow`` is the sum of squares of what least squares leave."""
+    w = np.random.default_rng(5).normal(size=(300, SIZE))
+    own = triangles(w.T @ w)
+    left = w[:, 0] - w[:, 1:] @ np.linalg.lstsq(w[:, 1:], w[:, 0], rcond=None)[0]
+    np.testing.assert_allclose(about_mean_flow(own, own[None]), [(left**2).sum()])
 
 
 def test_too_few_steps_give_no_diffusion():
