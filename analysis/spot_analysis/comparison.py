@@ -57,11 +57,11 @@ def quantities(view):
             for name, value in concept.quantities(view).items()}
 
 
-def compare(dem_view, spot_view, progress=lambda text: None):
-    """The rows of the comparison."""
+def compare(dem_view, spot_view, progress=lambda text: None, sections=SECTIONS):
+    """The rows of the comparison; sections : name -> concepts."""
     steady = dem_view.interval.is_steady()
     rows = []
-    for section, concepts in SECTIONS.items():
+    for section, concepts in sections.items():
         for concept in concepts:
             progress(f"estimating {concept.__name__.rpartition('.')[2]}")
             dem, spot = concept.quantities(dem_view), concept.quantities(spot_view)

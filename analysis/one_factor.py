@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Change one choice of the spot model at a time, and say what that does to its distance from DEM."""
+
+import argparse
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+
+from spot_analysis.interpreter import require_packages
+
+require_packages("numpy", "scipy", "matplotlib")
+
+import numpy as np  # noqa: E402  (only after the check above)
+
+from spot_analysis import (bond_angles, bond_order, command_line, comparison, counts, front, packing,  # noqa: E402
+                           particle_diffusion, profile_width, radial_distribution, run_statistics, thickness,
+                           velocity_correlation)
+from spot_analysis.errors import AnalysisError  # noqa: E402
+from spot_analysis.scene import load_scene  # noqa: E402
+
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+MEASURED = (velocity_correlation, particle_diffusion, bond_angles, bond_order, thickness)
+CONCEPTS = (counts, front, profile_width, packing, radial_distribution, *MEASURED)
+# name -> variables of the deck; "options" are added to the deck's own
+CHOICES = {
+    "the deck": {},
+    "side buffer 0.5 d": {"options": "buffer $(0.5*v_d) $(v_d)"},
+    "side buffer 0": {"options": "buffer 0 $(v_d)"},
+    "R_s -25 %": {"radius": "$(1.95*v_d)", "volume": "33.4", "injection": "$(876/v_tau)"},
+    "R_s +25 %": {"radius": "$(3.25*v_d)", "volume": "147", "injection": "$(199/v_tau)"},
+    "w 1.5e-3": {"influence": "1.5e-3", "injection": "$(633/v_tau)"},
+    "v_s 3.65 d/tau": {"speed": "$(3.65*v_d/v_tau)"},
+    "dz 0.4 d": {"options": "dz $(0.4*v_d)"},
+    "dz 0.2 d": {"options": "dz $(0.2*v_d)"},
+    "alpha 0.6": {"options": "alpha 0.6"},
+    "alpha 1.0": {"options": "alpha 1.0"},
+    "no momentum": {"options": "momentum 0"},
+    "tolerance 0.0015": {"options": "relax tol 0.0015"},
+    "tolerance 0.006": {"options": "relax tol 0.006"},
+    "spots of constant w": {"volume": "0"},
+}
+QUANTITIES = {  # name in the comparison -> heading and factor
+    "outflow": ("outflow (1/tau)", 1), "flux_60d_over_outflow": ("flux 60 d", 1), "density_drop": ("drop", 1),
+    "arrival_30d": ("t 30 d", 1), "arrival_60d": ("t 60 d", 1), "arrival_90d": ("t 90 d", 1),
+    "variance_slope": ("slope (d)", 1), "particle_diffusion": ("1e3 b_p (d)", 1e3), "correlation_length": ("beta (d)", 1),
+    "correlation_rms": ("C rms", 1), "rdf_l2_ratio": ("g(r)", 1), "g3_l2_ratio": ("g3", 1), "contacts_per_grain": ("contacts", 1),
+    "packing_fraction": ("fraction", 1), "badness_ratio": ("B/B_DEM", 1), "crystal_share": ("crystal", 1),
+    "speed_wall_over_middle": ("v wall", 1),
+}
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("dem", metavar="DEM", help="statistics of measure.py")
+    parser.add_argument("-o", "--output", required=True, metavar="FOLDER", help="keeps statistics of every run; those there are "
+                        "are not made again")
+    parser.add_argument("--lmp", default=os.path.join(FOLDER, os.pardir, "build", "bin", "lmp"), metavar="COMMAND")
+    parser.add_argument("--deck", default=os.path.join(FOLDER, os.pardir, "examples", "silo", "in.silo_spot"), metavar="FILE")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3], metavar="N")
+    parser.add_argument("--only", nargs="+", choices=CHOICES, default=list(CHOICES), metavar="CHOICE")
+    parser.add_argument("--parameters", metavar="FILE", help="of calibrate.py, in place of the deck's own")
+    return parser.parse_args()
+
+
+def run_deck(options, choice, seed):
+    """Statistics of a run of the deck, kept in the output folder; the dumps are not."""
+    name = f"{choice.replace(' ', '_').replace('%', 'percent')}.{seed}"
+    stored = os.path.join(options.output, f"{name}.npz")
+    if not os.path.exists(stored):
+        dumps = os.path.abspath(os.path.join(options.output, name))
+        variables = {"seed": str(seed), "out": dumps, **CHOICES[choice]}
+        variables["options"] = f"accuracy normal {CHOICES[choice].get('options', '')}"
+        if options.parameters:
+            variables["parameters"] = os.path.abspath(options.parameters)
+        words = [word for key, value in variables.items() for word in ("-var", key, value)]
+        done = subprocess.run([*shlex.split(options.lmp), "-in", os.path.basename(options.deck), "-log", "none", *words],
+                              cwd=os.path.dirname(os.path.abspath(options.deck)), capture_output=True, text=True)
+        if done.returncode != 0:
+            raise AnalysisError(f"lmp failed on '{choice}': {(done.stdout + done.stderr).strip().splitlines()[-1]}")
+        run_statistics.measure(dumps, load_scene(dumps), name, {"source": choice}, concepts=MEASURED).save(stored)
+        shutil.rmtree(dumps)
+    return run_statistics.load(stored)
+
+
+def numbers(dem, spot):
+    """name -> (DEM, spot) of QUANTITIES over the steady part."""
+    common = comparison.common_times(dem, spot)
+    interval = comparison.choose_interval(dem.times[common[0]])
+    rows = comparison.compare(*(comparison.IntervalView(run, place, interval) for run, place in zip((dem, spot), common)),
+                              sections={"": CONCEPTS})
+    return {row.name: (row.dem, row.spot) for row in rows}
+
+
+def text(values, factor):
+    """Mean and standard deviation over seeds."""
+    known = [value * factor for value in values if value is not None]
+    if not known:
+        return "-"
+    return f"{np.mean(known):.3g}" + (f" +- {np.std(known, ddof=1):.1g}" if len(known) > 1 else "")
+
+
+def main():
+    options = parse_arguments()
+    os.makedirs(options.output, exist_ok=True)
+    dem = run_statistics.load(options.dem)
+    headings = [heading for heading, _ in QUANTITIES.values()]
+    for number, choice in enumerate(options.only):
+        found = [numbers(dem, run_deck(options, choice, seed)) for seed in options.seeds]
+        if number == 0:
+            print("| | " + " | ".join(headings) + " |\n" + "|---" * (len(headings) + 1) + "|")
+            print("| DEM | " + " | ".join(text([found[0][name][0]], factor) for name, (_, factor) in QUANTITIES.items()) + " |")
+        print(f"| {choice} | " + " | ".join(text([one[name][1] for one in found], factor)
+                                            for name, (_, factor) in QUANTITIES.items()) + " |")
+        sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    command_line.run(main)

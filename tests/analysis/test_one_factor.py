@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""one_factor.py on a plug that falls: table, its spread over seeds, and runs that are kept."""
+
+import subprocess
+import sys
+
+import pytest
+
+from conftest import ANALYSIS
+from synthetic import write_plug_flow
+
+TIMES = range(0, 26, 2)
+
+
+def one_factor(*arguments):
+    return subprocess.run([sys.executable, "-B", str(ANALYSIS / "one_factor.py"), *map(str, arguments)], capture_output=True,
+                          text=True)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """A deck whose seeds 1 and 2 fall by half a layer and a whole one in 2 tau; DEM falls by a layer."""
+    folder = tmp_path_factory.mktemp("study")
+    runs = [write_plug_flow(folder / name, speed, TIMES) for name, speed in (("slow", 0.5), ("fast", 1.0))]
+    done = subprocess.run([sys.executable, "-B", str(ANALYSIS / "measure.py"), runs[1], "-o", folder / "dem.npz"])
+    assert done.returncode == 0
+    lmp = folder / "lmp.py"
+    lmp.write_text("import shutil, sys\nword = lambda name: sys.argv[sys.argv.index(name) + 1]\n"
+                   f"shutil.copytree({runs!r}[int(word('seed')) - 1], word('out'))\n")
+    options = (folder / "dem.npz", "-o", folder / "out", "--seeds", 1, 2, "--only", "alpha 1.0")
+    return folder, options, one_factor(*options, "--lmp", f"{sys.executable} {lmp}")
+
+
+def test_table(study):
+    folder, _, done = study
+    assert done.returncode == 0, done.stderr
+    heading, _, dem, row = (line.split(" | ") for line in done.stdout.splitlines())
+    assert heading[1] == "outflow (1/tau)" and len(heading) == len(dem) == len(row)
+    assert dem[:2] == ["| DEM", "80"] and row[:2] == ["| alpha 1.0", "60 +- 3e+01"]  # 40 and 80
+    assert sorted(path.name for path in (folder / "out").iterdir()) == ["alpha_1.0.1.npz", "alpha_1.0.2.npz"]
+
+
+def test_runs_are_kept(study):
+    _, options, done = study
+    assert one_factor(*options, "--lmp", "absent").stdout == done.stdout
+
+
+def test_failing_runs_are_refused(study, tmp_path):
+    _, options, _ = study
+    done = one_factor(options[0], "-o", tmp_path, "--seeds", 1, "--lmp", f"{sys.executable} -c 'import sys; sys.exit(\"ERROR: no\")'")
+    assert done.returncode == 1 and done.stderr.strip().endswith("error: lmp failed on 'the deck': ERROR: no")
