@@ -24,17 +24,18 @@ from spot_analysis.scene import load_scene  # noqa: E402
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 MEASURED = (velocity_correlation, particle_diffusion, bond_angles, bond_order, thickness)
 CONCEPTS = (counts, front, profile_width, packing, radial_distribution, *MEASURED)
+D, TAU = 0.003, (0.003 / 9.81)**0.5  # m and s, of examples/silo/in.silo_spot
 # name -> variables of the deck; "options" are added to the deck's own
 CHOICES = {
     "the deck": {},
-    "side buffer 0.5 d": {"options": "buffer $(0.5*v_d) $(v_d)"},
-    "side buffer 0": {"options": "buffer 0 $(v_d)"},
-    "R_s -25 %": {"radius": "$(1.95*v_d)", "volume": "33.4", "injection": "$(876/v_tau)"},
-    "R_s +25 %": {"radius": "$(3.25*v_d)", "volume": "147", "injection": "$(199/v_tau)"},
-    "w 1.5e-3": {"influence": "1.5e-3", "injection": "$(633/v_tau)"},
-    "v_s 3.65 d/tau": {"speed": "$(3.65*v_d/v_tau)"},
-    "dz 0.4 d": {"options": "dz $(0.4*v_d)"},
-    "dz 0.2 d": {"options": "dz $(0.2*v_d)"},
+    "side buffer 0.5 d": {"options": f"buffer {0.5 * D} {D}"},
+    "side buffer 0": {"options": f"buffer 0 {D}"},
+    "R_s -25 %": {"radius": f"{1.95 * D}", "volume": "33.4", "injection": f"{876 / TAU}"},
+    "R_s +25 %": {"radius": f"{3.25 * D}", "volume": "147", "injection": f"{199 / TAU}"},
+    "w 1.5e-3": {"influence": "1.5e-3", "injection": f"{633 / TAU}"},
+    "v_s 3.65 d/tau": {"speed": f"{3.65 * D / TAU}"},
+    "dz 0.4 d": {"options": f"dz {0.4 * D}"},
+    "dz 0.2 d": {"options": f"dz {0.2 * D}"},
     "alpha 0.6": {"options": "alpha 0.6"},
     "alpha 1.0": {"options": "alpha 1.0"},
     "no momentum": {"options": "momentum 0"},
@@ -79,7 +80,9 @@ def run_deck(options, choice, seed):
         done = subprocess.run([*shlex.split(options.lmp), "-in", os.path.basename(options.deck), "-log", "none", *words],
                               cwd=os.path.dirname(os.path.abspath(options.deck)), capture_output=True, text=True)
         if done.returncode != 0:
-            raise AnalysisError(f"lmp failed on '{choice}': {(done.stdout + done.stderr).strip().splitlines()[-1]}")
+            lines = (done.stdout + done.stderr).strip().splitlines() or ["no output"]
+            reason = next((line for line in lines if line.startswith("ERROR")), lines[-1])
+            raise AnalysisError(f"lmp failed on '{choice}': {reason}")
         run_statistics.measure(dumps, load_scene(dumps), name, {"source": choice}, concepts=MEASURED).save(stored)
         shutil.rmtree(dumps)
     return run_statistics.load(stored)
