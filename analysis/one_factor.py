@@ -33,7 +33,7 @@ CHOICES = {
     "R_s -25 %": {"radius": f"{1.95 * D}", "volume": "33.4", "injection": f"{876 / TAU}"},
     "R_s +25 %": {"radius": f"{3.25 * D}", "volume": "147", "injection": f"{199 / TAU}"},
     "w 1.5e-3": {"influence": "1.5e-3", "injection": f"{633 / TAU}"},
-    "v_s 3.65 d/tau": {"speed": f"{3.65 * D / TAU}"},
+    "v_s 3.65": {"speed": f"{3.65 * D / TAU}"},
     "dz 0.4 d": {"options": f"dz {0.4 * D}"},
     "dz 0.2 d": {"options": f"dz {0.2 * D}"},
     "alpha 0.6": {"options": "alpha 0.6"},
