@@ -234,7 +234,7 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy) {
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 5e-3 : 3e-3;
+  relaxation.tolerance = fast ? 5e-3 : 2.8e-3;
   relaxation.alpha = fast ? 1.2 : 0.8;
   relaxation.momentum = fast ? 0.7 : 0.6;
   return relaxation;
@@ -250,7 +250,7 @@ void SpotCommand::resolve(double diameter) {
   if (spots.radius == 0.0) spots.radius = 2.6 * diameter;
   if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
   spots.step_width = spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height);
-  side_buffer = side_buffer.value_or(diameter);
+  side_buffer = side_buffer.value_or(0.5 * diameter);
   base_buffer = base_buffer.value_or(diameter);
   outlet = outlet.value_or(orifice->centre.z());
 }
