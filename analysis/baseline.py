@@ -9,7 +9,7 @@ import os
 
 from spot_analysis.interpreter import require_packages
 
-require_packages("numpy", "scipy", "matplotlib")
+require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import numpy as np  # noqa: E402  (only after the check above)
 

@@ -7,7 +7,7 @@ import os
 
 from spot_analysis.interpreter import require_packages
 
-require_packages("numpy", "scipy", "matplotlib")
+require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 from spot_analysis import (calibration, calibration_output, calibration_plots, calibration_refinement,  # noqa: E402
                            calibration_response, calibration_view, command_line)

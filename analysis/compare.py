@@ -7,9 +7,10 @@ import os
 
 from spot_analysis.interpreter import require_packages
 
-require_packages("numpy", "scipy", "matplotlib")
+require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 from spot_analysis import command_line, comparison, report  # noqa: E402  (only after the check above)
+from spot_analysis.errors import AnalysisError  # noqa: E402
 from spot_analysis.progress import Progress  # noqa: E402
 
 
@@ -30,10 +31,19 @@ def parse_arguments():
     return parser.parse_args()
 
 
+def require_all_measured(run, source):
+    """one_factor.py stores a part of what is compared here."""
+    missing = [name for name, arrays in run.measured.items() if not vars(arrays)]
+    if missing:
+        raise AnalysisError(f"{source}: the statistics lack {', '.join(missing)}; measure the dumps again with measure.py")
+
+
 def main():
     options = parse_arguments()
     dem = command_line.open_run(options.dem, options, "dem-", "DEM")
     spot = command_line.open_run(options.spot, options, "spot-", "spot")
+    for run, source in ((dem, options.dem), (spot, options.spot)):
+        require_all_measured(run, source)
     dem_common, spot_common = comparison.common_times(dem, spot)
     times = dem.times[dem_common]
     interval = comparison.choose_interval(times, options.start, options.end)

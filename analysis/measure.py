@@ -7,7 +7,7 @@ import os
 
 from spot_analysis.interpreter import require_packages
 
-require_packages("numpy", "scipy")
+require_packages("numpy", "scipy", "zstandard")
 
 from spot_analysis import command_line, run_statistics  # noqa: E402  (only after the check above)
 

@@ -25,7 +25,7 @@ sys.path.insert(0, str(ROOT / "analysis"))
 
 from spot_analysis.interpreter import require_packages  # noqa: E402
 
-require_packages("numpy", "scipy")
+require_packages("numpy", "scipy", "zstandard")
 
 import numpy as np  # noqa: E402
 from spot_analysis import packing, radial_distribution, run_statistics, structure  # noqa: E402

@@ -4,7 +4,8 @@
 import importlib.util
 import sys
 
-PACKAGES = {"numpy": "python3-numpy", "scipy": "python3-scipy", "matplotlib": "python3-matplotlib"}
+PACKAGES = {"numpy": "python3-numpy", "scipy": "python3-scipy", "matplotlib": "python3-matplotlib",
+            "zstandard": "python3-zstandard"}
 
 
 def require_packages(*modules):

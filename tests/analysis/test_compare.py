@@ -136,6 +136,13 @@ def test_report_is_self_contained(report):
         assert (report[0] / f"{name}.png").stat().st_size > 5000
 
 
+def test_statistics_that_lack_a_part(runs, tmp_path):
+    with np.load(runs["dem"]) as stored:
+        kept = {name: stored[name] for name in stored.files if not name.startswith("voronoi.")}
+    np.savez(tmp_path / "part.npz", **kept)
+    assert "part.npz: the statistics lack voronoi" in fails("compare.py", runs["dem"], tmp_path / "part.npz", "-o", tmp_path)
+
+
 def test_stored_statistics_equal_the_dumps(runs):
     output = runs["folder"] / "self"
     succeed("compare.py", runs["dem"], runs["dumps"], "-o", output)
