@@ -234,7 +234,7 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy) {
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 5e-3 : 2.8e-3;
+  relaxation.tolerance = fast ? 5e-3 : 2.9e-3;
   relaxation.alpha = fast ? 1.2 : 0.8;
   relaxation.momentum = fast ? 0.7 : 0.6;
   return relaxation;

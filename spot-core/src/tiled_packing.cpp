@@ -187,6 +187,7 @@ void TiledPacking::set_slabs(const std::vector<std::int64_t>& grains_in_layer) {
   const auto slots = static_cast<std::size_t>(cells) * capacity_;
   account_.assign(static_cast<std::size_t>(cells), 0);
   path_.assign(static_cast<std::size_t>(cells), 0);
+  cell_near_wall_.assign(static_cast<std::size_t>(cells), 0);
   points_.assign(slots, nobody);
   references_.assign(slots, nobody);
   momenta_.assign(slots, {0, 0, 0, 0});
@@ -237,8 +238,7 @@ TiledPacking::Cell TiledPacking::cell(std::uint32_t index) const {
   return {in_layer % n_[0], in_layer / n_[0], i / (n_[0] * n_[1]) + first_layer_};
 }
 
-Vector3 TiledPacking::from_low(const Point& point, std::uint32_t index) const {
-  const Cell at = cell(index);
+Vector3 TiledPacking::from_low(const Point& point, const Cell& at) const {
   const std::int64_t x = at.x * edge_quanta_[0], y = at.y * edge_quanta_[1], z = at.z * edge_quanta_[2];
   return quantum_.length() * Vector3(static_cast<double>(x + minus(point.x, wrap(x))),
                                      static_cast<double>(y + minus(point.y, wrap(y))),
@@ -340,8 +340,11 @@ void TiledPacking::set_capacity(std::uint32_t capacity) {
 // ---- the rest
 
 void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit) const {
-  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot)
-    if (ids_[slot] >= 0) visit(grain(slot));
+  for (std::uint32_t index = first_owned(); index < last_owned(); ++index) {
+    const Cell at = cell(index);
+    for (std::uint32_t slot = index * capacity_; slot < (index + 1) * capacity_; ++slot)
+      if (ids_[slot] >= 0) visit({ids_[slot], low_ + from_low(points_[slot], at), points_[slot].state == Point::held});
+  }
 }
 
 void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {

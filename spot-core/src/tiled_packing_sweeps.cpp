@@ -53,24 +53,22 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
 }
 
 void TiledPacking::collect(Share& share) const {
-  const std::size_t slots = static_cast<std::size_t>(share.last - share.first) * capacity_;
-  share.active.resize(slots);
-  share.walled.resize(slots);
+  share.active.resize(static_cast<std::size_t>(share.last - share.first) * capacity_);
+  share.walled.clear();
   share.in_cell.clear();
-  std::uint32_t n = 0, walled = 0;
+  std::uint32_t n = 0;
   for (std::uint32_t k = share.first; k < share.last; ++k) {
     const std::uint32_t before = n, first = due_cells_[k] * capacity_;
     for (std::uint32_t slot = first; slot < first + capacity_; ++slot) {
-      const bool active = points_[slot].state == Point::free;
-      share.walled[walled] = n;
-      walled += active && near_wall_[slot] != 0 ? 1 : 0;
       share.active[n] = slot;
-      n += active ? 1 : 0;
+      n += points_[slot].state == Point::free ? 1 : 0;
     }
     share.in_cell.push_back(static_cast<std::uint8_t>(n - before));
+    if (cell_near_wall_[due_cells_[k]] == 0) continue;
+    for (std::uint32_t place = before; place < n; ++place)
+      if (near_wall_[share.active[place]] != 0) share.walled.push_back(place);
   }
   share.active.resize(n);
-  share.walled.resize(walled);
 }
 
 void TiledPacking::push_apart(Share& share, const RelaxationParameters& parameters, const Container& container) const {

@@ -49,6 +49,7 @@ void TiledPacking::mark_near_wall(std::uint32_t slot, const Container& container
   other_contacts(container, at, reach, contacts);
   if (contacts.begin() != contacts.end()) mark |= near_other_wall;
   near_wall_[slot] = mark;
+  if (mark != 0) cell_near_wall_[slot / capacity_] = 1;
 }
 
 void TiledPacking::mark_near_walls(const Container& container) {

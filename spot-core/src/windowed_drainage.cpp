@@ -18,7 +18,7 @@ constexpr int most_sweeps = 16;
 constexpr double deepest_overlap = 0.02;
 
 /// Windows after which all grains are looked at for overlaps, which costs less than 1 % of the run time.
-constexpr std::int64_t windows_between_looks = 64;
+constexpr std::int64_t windows_between_looks = 512;
 
 /// In a window spots climb no farther than this, in diameters: coordinates wrap around after 256 of them. And no less
 /// than this, or time hardly goes on.

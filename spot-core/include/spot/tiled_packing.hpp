@@ -138,7 +138,8 @@ class TiledPacking {
   // Places. "From low": in deck units, from the lowest corner of the grid.
   std::array<std::int64_t, 3> quanta(const Vector3& from_low) const;
   Point wrapped(const Vector3& from_low) const;
-  Vector3 from_low(const Point& point, std::uint32_t cell) const;
+  Vector3 from_low(const Point& point, const Cell& listed_in) const;
+  Vector3 from_low(const Point& point, std::uint32_t index) const { return from_low(point, cell(index)); }
   Vector3 position(std::uint32_t slot) const { return low_ + from_low(points_[slot], slot / capacity_); }
   Grain grain(std::uint32_t slot) const;
   int cell_coordinate(double from_low, int axis) const;
@@ -237,10 +238,11 @@ class TiledPacking {
   std::array<Bytes, 2> migrants_;              // grains that go to the ranks below and above
 
   std::vector<Point> points_, references_;
-  std::vector<Point> momenta_;           // the last correction, as far as it is carried on
-  std::vector<std::int64_t> ids_;        // -1 in empty slots
-  std::vector<TouchingPlane> planes_;    // the container's axis planes, unless there are too many
-  std::vector<std::uint8_t> near_wall_;  // a bit for each of these; the highest for all other walls
+  std::vector<Point> momenta_;                // the last correction, as far as it is carried on
+  std::vector<std::int64_t> ids_;             // -1 in empty slots
+  std::vector<TouchingPlane> planes_;         // the container's axis planes, unless there are too many
+  std::vector<std::uint8_t> near_wall_;       // a bit for each of these; the highest for all other walls
+  std::vector<std::uint8_t> cell_near_wall_;  // has any grain of this cell ever been near one?
   std::vector<std::uint32_t> lists_;
   std::vector<std::uint8_t> list_size_;
   std::vector<std::uint8_t> marks_;    // of slots, zero between uses
