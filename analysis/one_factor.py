@@ -28,7 +28,7 @@ D, TAU = 0.003, (0.003 / 9.81)**0.5  # m and s, of examples/silo/in.silo_spot
 # name -> variables of the deck; "options" are added to the deck's own
 CHOICES = {
     "the deck": {},
-    "side buffer 0.5 d": {"options": f"buffer {0.5 * D} {D}"},
+    "side buffer 1 d": {"options": f"buffer {D} {D}"},
     "side buffer 0": {"options": f"buffer 0 {D}"},
     "R_s -25 %": {"radius": f"{1.95 * D}", "volume": "33.4", "injection": f"{876 / TAU}"},
     "R_s +25 %": {"radius": f"{3.25 * D}", "volume": "147", "injection": f"{199 / TAU}"},
