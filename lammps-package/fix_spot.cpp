@@ -293,41 +293,39 @@ double FixSpot::extent() const {
   return extent;
 }
 
-void FixSpot::make_drainage(const std::vector<spot::Grain> &grains) {
+/// From the grains of LAMMPS, or from what a restart file says.
+void FixSpot::make_drainage() {
   const SpotCommand &command = model->command;
   const spot::DrainageLimits limits{*command.outlet, command.largest_overlap};
-  if (*command.time_ordered)
-    model->drainage = std::make_unique<spot::TimeOrderedDrainage>(
-        command.spots, command.relaxation, limits, model->container, spot::Packing(model->diameter, extent(), grains));
-  else
+  const double diameter = model->diameter;
+  const auto time_ordered = [&](auto &&...start) {
+    model->drainage = std::make_unique<spot::TimeOrderedDrainage>(command.spots, command.relaxation, limits,
+                                                                  model->container, start...);
+  };
+  const auto windowed = [&](const auto &start) {
     model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits,
                                                                *command.window, command.threads, model->container,
-                                                               model->diameter, extent(), grains, model->ranks);
-}
-
-void FixSpot::go_on_from_restart(double extent) {
-  const SpotCommand &command = model->command;
-  const spot::DrainageLimits limits{*command.outlet, command.largest_overlap};
-  const SavedRun run = std::move(*model->saved);
-  model->saved.reset();
-  if (*command.time_ordered)
-    model->drainage = std::make_unique<spot::TimeOrderedDrainage>(
-        command.spots, command.relaxation, limits, model->container, model->diameter, extent, run.parts.at(0));
-  else
-    model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits,
-                                                               *command.window, command.threads, model->container,
-                                                               model->diameter, extent, run.parts, model->ranks);
+                                                               diameter, extent(), start, model->ranks);
+  };
+  if (model->saved) {
+    const SavedRun run = std::move(*model->saved);
+    model->saved.reset();
+    *command.time_ordered ? time_ordered(diameter, extent(), run.parts.at(0)) : windowed(run.parts);
+  } else {
+    const std::vector<spot::Grain> grains = grains_of_lammps();
+    *command.time_ordered ? time_ordered(spot::Packing(diameter, extent(), grains)) : windowed(grains);
+  }
 }
 
 void FixSpot::setup(int) {
   try {
-    if (model->saved)
-      go_on_from_restart(extent());
-    else if (!model->drainage)
-      make_drainage(grains_of_lammps());
-    if (model->command.uses_region()) model->drainage->replace_container(model->container);
-    if (!grains_are_as_they_were()) model->drainage->replace_grains(grains_of_lammps());
-    model->drainage->require_inside();
+    const bool goes_on = model->drainage || model->saved;
+    if (!model->drainage) make_drainage();
+    if (goes_on) {
+      if (model->command.uses_region()) model->drainage->replace_container(model->container);
+      if (!grains_are_as_they_were()) model->drainage->replace_grains(grains_of_lammps());
+      model->drainage->require_inside();
+    }
     write_grains({}, false);
   } catch (const spot::Error &e) {
     fail(e);

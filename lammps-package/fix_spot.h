@@ -48,8 +48,7 @@ class FixSpot : public Fix {
   void choose_window();
   void check_other_fixes();
   void make_container();
-  void make_drainage(const std::vector<spot::Grain> &);
-  void go_on_from_restart(double);
+  void make_drainage();
   double extent() const;
   bool grains_are_as_they_were() const;
   void check_box();

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "spot_bytes.hpp"
+#include "packed.hpp"
 
 namespace spot {
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kernel_builds.hpp"
+#include "packed.hpp"
 #include "spot/errors.hpp"
 #include "wrapped_integers.hpp"
 
@@ -42,8 +43,7 @@ struct SavedGrid {
 
 }  // namespace
 
-TiledPacking::TiledPacking(double diameter, double extent, double outlet, const std::vector<Grain>& grains,
-                           const Container& container, std::shared_ptr<Communicator> communicator)
+TiledPacking::TiledPacking(double diameter, double extent, std::shared_ptr<Communicator> communicator)
     : kernels_(&kernels::best()),
       diameter_(diameter),
       extent_(extent),
@@ -51,6 +51,12 @@ TiledPacking::TiledPacking(double diameter, double extent, double outlet, const 
       skin_(skin_in_diameters * diameter),
       list_capacity_(kernels::lanes),
       communicator_(std::move(communicator)) {
+  set_edges();
+}
+
+TiledPacking::TiledPacking(double diameter, double extent, double outlet, const std::vector<Grain>& grains,
+                           const Container& container, std::shared_ptr<Communicator> communicator)
+    : TiledPacking(diameter, extent, std::move(communicator)) {
   // Packing checks what can be wrong with grains.
   const std::vector<Grain> checked = Packing(diameter, extent, grains).grains();
   constexpr double far = std::numeric_limits<double>::max();
@@ -80,13 +86,7 @@ TiledPacking::TiledPacking(double diameter, double extent, double outlet, const 
 
 TiledPacking::TiledPacking(double diameter, double extent, const std::vector<Bytes>& saved, const Container& container,
                            std::shared_ptr<Communicator> communicator)
-    : kernels_(&kernels::best()),
-      diameter_(diameter),
-      extent_(extent),
-      quantum_(diameter, extent, quantum_bits),
-      skin_(skin_in_diameters * diameter),
-      list_capacity_(kernels::lanes),
-      communicator_(std::move(communicator)) {
+    : TiledPacking(diameter, extent, std::move(communicator)) {
   std::vector<SavedGrain> grains;
   std::vector<SavedCell> cells;
   for (const Bytes& part : saved) {
@@ -104,29 +104,29 @@ TiledPacking::TiledPacking(double diameter, double extent, const std::vector<Byt
     for (const SavedGrain& grain : reader.take_all<SavedGrain>()) grains.push_back(grain);
     for (const SavedCell& cell : reader.take_all<SavedCell>()) cells.push_back(cell);
   }
-  set_edges();
   const std::int64_t all_cells = static_cast<std::int64_t>(cells_in_layer()) * n_[2];
+  const auto layer_of = [&](const auto& saved_thing) {
+    if (saved_thing.cell < 0 || saved_thing.cell >= all_cells)
+      throw InvalidState(message("the saved state has cell ", saved_thing.cell, " of ", all_cells));
+    return static_cast<int>(saved_thing.cell / cells_in_layer());
+  };
   std::vector<std::int64_t> in_layer(static_cast<std::size_t>(n_[2]), 0);
-  for (const SavedGrain& grain : grains) {
-    if (grain.cell < 0 || grain.cell >= all_cells)
-      throw InvalidState(message("grain ", grain.id, " of the saved state is in cell ", grain.cell, " of ", all_cells));
-    ++in_layer[static_cast<std::size_t>(grain.cell / cells_in_layer())];
-  }
+  for (const SavedGrain& grain : grains) ++in_layer[static_cast<std::size_t>(layer_of(grain))];
   set_slabs(in_layer);
   const std::int64_t before = static_cast<std::int64_t>(first_layer_) * cells_in_layer();
-  const auto here = [&](std::int64_t cell) { return static_cast<std::uint32_t>(cell - before); };
+  const auto is_own = [&](const auto& saved_thing) {
+    return slabs_.owner(layer_of(saved_thing)) == communicator_->rank();
+  };
   for (const SavedGrain& grain : grains) {
-    if (slabs_.owner(static_cast<int>(grain.cell / cells_in_layer())) != communicator_->rank()) continue;
-    const std::uint32_t at = slot(ensure_room(here(grain.cell)));
+    if (!is_own(grain)) continue;
+    const std::uint32_t at = slot(ensure_room(static_cast<std::uint32_t>(grain.cell - before)));
     occupy(at, grain.id, grain.point, grain.reference);
     momenta_[at] = grain.momentum;
   }
   for (const SavedCell& cell : cells) {
-    if (cell.cell < 0 || cell.cell >= all_cells)
-      throw InvalidState(message("the saved state has cell ", cell.cell, " of ", all_cells));
-    if (slabs_.owner(static_cast<int>(cell.cell / cells_in_layer())) != communicator_->rank()) continue;
-    account_[here(cell.cell)] = cell.account;
-    path_[here(cell.cell)] = cell.path;
+    if (!is_own(cell)) continue;
+    account_[static_cast<std::size_t>(cell.cell - before)] = cell.account;
+    path_[static_cast<std::size_t>(cell.cell - before)] = cell.path;
   }
   list_all(container);
 }
@@ -162,7 +162,6 @@ void TiledPacking::set_edges() {
 }
 
 void TiledPacking::set_grid(const Vector3& low, const Vector3& high) {
-  set_edges();
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     low_[axis] = quantum_.snap(low[axis]);
@@ -201,19 +200,10 @@ void TiledPacking::set_slabs(const std::vector<std::int64_t>& grains_in_layer) {
 /// Of the grains that all ranks bring together, those in this rank's layers.
 std::vector<Grain> TiledPacking::take_own(const std::vector<Grain>& grains) const {
   std::vector<Bytes> outgoing(static_cast<std::size_t>(communicator_->size()));
-  for (const Grain& grain : grains) {
-    Bytes& bytes = outgoing[static_cast<std::size_t>(owner(grain.position.z()))];
-    append(bytes, grain.id);
-    append(bytes, grain.position);
-    append(bytes, grain.held);
-  }
+  for (const Grain& grain : grains) append(outgoing[static_cast<std::size_t>(owner(grain.position.z()))], grain);
   std::vector<Grain> own;
   for (const Bytes& bytes : communicator_->exchange(std::move(outgoing)))
-    for (ByteReader reader(bytes); !reader.at_end();) {
-      const auto id = reader.take<std::int64_t>();
-      const auto position = reader.take<Vector3>();
-      own.push_back({id, position, reader.take<bool>()});
-    }
+    for (ByteReader reader(bytes); !reader.at_end();) own.push_back(take_grain(reader));
   return own;
 }
 

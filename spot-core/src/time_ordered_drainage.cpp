@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "packed.hpp"
 #include "spot/displacement.hpp"
 
 namespace spot {
@@ -11,11 +12,7 @@ namespace {
 
 std::vector<Grain> take_grains(ByteReader& saved) {
   std::vector<Grain> grains;
-  for (auto n = saved.take<std::uint64_t>(); n > 0; --n) {
-    const auto id = saved.take<std::int64_t>();
-    const auto position = saved.take<Vector3>();
-    grains.push_back({id, position, saved.take<bool>()});
-  }
+  for (auto n = saved.take<std::uint64_t>(); n > 0; --n) grains.push_back(take_grain(saved));
   return grains;
 }
 
@@ -51,11 +48,7 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
 Bytes TimeOrderedDrainage::save() const {
   Bytes bytes;
   append(bytes, static_cast<std::uint64_t>(packing_.size()));
-  for (const Grain& grain : packing_.grains()) {
-    append(bytes, grain.id);
-    append(bytes, grain.position);
-    append(bytes, grain.held);
-  }
+  for (const Grain& grain : packing_.grains()) append(bytes, grain);
   population_.save(bytes);
   append(bytes, counters_);
   append(bytes, relaxed_everywhere_);

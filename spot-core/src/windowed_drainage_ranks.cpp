@@ -1,36 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 
+#include "packed.hpp"
 #include "spot/windowed_drainage.hpp"
-#include "spot_bytes.hpp"
 
 namespace spot {
 
 namespace {
 
 bool in_order(const Move& a, const Move& b) { return a.spot != b.spot ? a.spot < b.spot : a.number < b.number; }
-
-void append_move(Bytes& bytes, const Move& move) {
-  append(bytes, move.time);
-  append(bytes, move.spot);
-  append(bytes, move.middle);
-  append(bytes, move.step);
-  append(bytes, move.weight);
-  append(bytes, move.number);
-  append(bytes, move.chance);
-}
-
-Move take_move(ByteReader& reader) {
-  Move move;
-  move.time = reader.take<double>();
-  move.spot = reader.take<std::int64_t>();
-  move.middle = reader.take<Vector3>();
-  move.step = reader.take<Vector3>();
-  move.weight = reader.take<double>();
-  move.number = reader.take<std::int64_t>();
-  move.chance = reader.take<double>();
-  return move;
-}
 
 /// How many grains of a rank a move has moved.
 struct Count {
@@ -56,7 +34,7 @@ void WindowedDrainage::share_turns() {
         continue;
       }
       append(outgoing[static_cast<std::size_t>(rank)], turn.owner);
-      append_move(outgoing[static_cast<std::size_t>(rank)], turn.move);
+      append(outgoing[static_cast<std::size_t>(rank)], turn.move);
     }
   }
   turns_.swap(kept);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 
+#include "packed.hpp"
 #include "spot/errors.hpp"
 #include "spot/windowed_drainage.hpp"
-#include "spot_bytes.hpp"
 
 namespace spot {
 

@@ -50,7 +50,7 @@ class ByteReader {
       return {x, y, take<double>()};
     } else {
       static_assert(std::is_trivially_copyable_v<T>);
-      require(sizeof(T));
+      require(1, sizeof(T));
       T value;
       std::memcpy(&value, next_, sizeof value);
       next_ += sizeof value;
@@ -62,7 +62,7 @@ class ByteReader {
   std::vector<T> take_all() {
     static_assert(std::is_trivially_copyable_v<T>);
     const auto n = take<std::uint64_t>();
-    require(n <= static_cast<std::uint64_t>(end_ - next_) / sizeof(T) ? n * sizeof(T) : most);
+    require(n, sizeof(T));
     std::vector<T> values(n);
     if (n > 0) std::memcpy(values.data(), next_, n * sizeof(T));
     next_ += n * sizeof(T);
@@ -70,10 +70,8 @@ class ByteReader {
   }
 
  private:
-  static constexpr std::size_t most = static_cast<std::size_t>(-1);
-
-  void require(std::size_t n) const {
-    if (static_cast<std::size_t>(end_ - next_) < n) throw InvalidState("the saved state ends early");
+  void require(std::uint64_t n, std::size_t size) const {
+    if (static_cast<std::size_t>(end_ - next_) / size < n) throw InvalidState("the saved state ends early");
   }
 
   const char *next_, *end_;

@@ -135,6 +135,8 @@ class TiledPacking {
     std::uint32_t cell, in_cell;
   };
 
+  TiledPacking(double diameter, double extent, std::shared_ptr<Communicator> communicator);
+
   // Places. "From low": in deck units, from the lowest corner of the grid.
   std::array<std::int64_t, 3> quanta(const Vector3& from_low) const;
   Point wrapped(const Vector3& from_low) const;
