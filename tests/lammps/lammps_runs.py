@@ -58,8 +58,23 @@ def write_data(path, points, ids=None, diameter=1.0, box=BOX, diameters=None, de
     path.write_text("\n".join(lines) + "\n")
 
 
-def deck(fix=FIX, run="run 30", before="", after="", units="lj", boundary="f f f", timestep=0.1):
-    """A deck that drains packing.data; `before` and `after` are lines before and after the fix."""
+def run_text(fix, run, after="", timestep=0.1, dumps="grains.dump"):
+    """The end of a deck, from the fix on; `after` are lines after it."""
+    return f"""
+{fix}
+timestep {timestep}
+thermo 5
+thermo_style custom step atoms f_drain[*]
+thermo_modify lost error format float %.15g
+dump grains all custom 10 {dumps} id type x y z radius vx vy vz
+dump_modify grains sort id format float %.17g
+{after}
+{run}
+"""
+
+
+def deck(fix=FIX, run="run 30", before="", units="lj", boundary="f f f", **parts):
+    """A deck that drains packing.data; `before` are lines before the fix, `parts` those of run_text()."""
     return f"""
 units {units}
 atom_style sphere
@@ -67,16 +82,7 @@ boundary {boundary}
 include {LOAD_SPOT}
 read_data packing.data
 {before}
-{fix}
-timestep {timestep}
-thermo 5
-thermo_style custom step atoms f_drain[*]
-thermo_modify lost error format float %.15g
-dump grains all custom 10 grains.dump id type x y z radius vx vy vz
-dump_modify grains sort id format float %.17g
-{after}
-{run}
-"""
+""" + run_text(fix, run, **parts)
 
 
 def on_ranks(ranks):

@@ -10,34 +10,21 @@ import time
 
 import pytest
 
-from lammps_runs import FIX, FRONT_END, LOAD_SPOT, deck, drain, error_of, needs_mpirun, on_ranks, run, run_ok, thermo
+from lammps_runs import FIX, FRONT_END, LOAD_SPOT, deck, drain, error_of, needs_mpirun, on_ranks, run, run_ok, run_text, thermo
 
 FIX = FIX + " volume 77"
 EXACT = FIX + " accuracy exact"
+EACH = "grains.*.dump"  # every snapshot in a file of its own
 
 
-def rest_of(restart, steps, fix=FIX, timestep=0.1, before=""):
+def rest_of(restart, steps, fix=FIX, **parts):
     """The deck that goes on until so many steps are done."""
     return f"""
 units lj
 atom_style sphere
 include {LOAD_SPOT}
 read_restart {restart}
-{before}
-{fix}
-timestep {timestep}
-thermo 5
-thermo_style custom step atoms f_drain[*]
-thermo_modify lost error format float %.15g
-dump grains all custom 10 grains.*.dump id type x y z radius vx vy vz
-dump_modify grains sort id format float %.17g
-run {steps} upto
-"""
-
-
-def in_files(text):
-    """Every snapshot in a file of its own."""
-    return text.replace("grains.dump", "grains.*.dump")
+""" + run_text(fix, f"run {steps} upto", dumps=EACH, **parts)
 
 
 def snapshots(folder):
@@ -48,7 +35,7 @@ def snapshots(folder):
 def whole(tmp_path_factory):
     """Thermo output and snapshots of the run that was never interrupted."""
     folder = tmp_path_factory.mktemp("whole")
-    said = run_ok(in_files(deck(fix=FIX)), folder)
+    said = run_ok(deck(fix=FIX, dumps=EACH), folder)
     return thermo(said), snapshots(folder)
 
 
@@ -67,20 +54,20 @@ def go_on(folder, restart, whole, launcher=(), **parts):
 @needs_mpirun
 @pytest.mark.parametrize("before, after", [(1, 1), (1, 3), (2, 1), (3, 2)])
 def test_goes_on_with_the_same_bits(whole, tmp_path, before, after):
-    run_ok(in_files(deck(fix=FIX, run="run 13\nwrite_restart half.restart")), tmp_path, launcher=on_ranks(before))
+    run_ok(deck(fix=FIX, run="run 13\nwrite_restart half.restart", dumps=EACH), tmp_path, launcher=on_ranks(before))
     go_on(tmp_path, "half.restart", whole, launcher=on_ranks(after))
 
 
 def test_after_clear(whole, tmp_path):
-    run_ok(in_files(deck(fix=FIX, run="run 20\nwrite_restart half.restart")) + "\nclear\n" + rest_of("half.restart", 30), tmp_path)
+    run_ok(deck(fix=FIX, run="run 20\nwrite_restart half.restart", dumps=EACH) + "\nclear\n" + rest_of("half.restart", 30), tmp_path)
     assert snapshots(tmp_path) == whole[1]
 
 
 def test_order_of_time(tmp_path):
     (tmp_path / "one").mkdir()
-    one = in_files(deck(fix=EXACT, run="run 20"))
+    one = deck(fix=EXACT, run="run 20", dumps=EACH)
     run_ok(one, tmp_path / "one")
-    run_ok(in_files(deck(fix=EXACT, run="run 7\nwrite_restart half.restart")), tmp_path)
+    run_ok(deck(fix=EXACT, run="run 7\nwrite_restart half.restart", dumps=EACH), tmp_path)
     run_ok(rest_of("half.restart", 20, fix=EXACT), tmp_path)
     assert snapshots(tmp_path) == snapshots(tmp_path / "one")
 
@@ -88,8 +75,8 @@ def test_order_of_time(tmp_path):
 def test_another_timestep_with_the_same_window(tmp_path):
     windowed = FIX + " window 0.005"
     (tmp_path / "one").mkdir()
-    run_ok(in_files(deck(fix=windowed)), tmp_path / "one")
-    run_ok(in_files(deck(fix=windowed, run="run 10\nwrite_restart half.restart")), tmp_path)
+    run_ok(deck(fix=windowed, dumps=EACH), tmp_path / "one")
+    run_ok(deck(fix=windowed, run="run 10\nwrite_restart half.restart", dumps=EACH), tmp_path)
     run_ok(rest_of("half.restart", 20, fix=windowed, timestep=0.2), tmp_path)
     columns = slice(0, 6)  # all but the velocities
     rows = [[line.split()[columns] for line in (folder / name).read_text().splitlines()[9:]]
@@ -158,7 +145,7 @@ def test_killed_at_random_moments(tmp_path):
     fix = FIX + " window 0.002"
     (tmp_path / "one").mkdir()
     begin = time.monotonic()
-    run_ok(in_files(deck(fix=fix, run="run 60")), tmp_path / "one")
+    run_ok(deck(fix=fix, run="run 60", dumps=EACH), tmp_path / "one")
     duration = time.monotonic() - begin
     end = snapshots(tmp_path / "one")["grains.60.dump"]
     draws = random.Random(1)
@@ -166,7 +153,7 @@ def test_killed_at_random_moments(tmp_path):
         folder = tmp_path / f"killed{attempt}"
         folder.mkdir()
         (folder / "packing.data").write_bytes((tmp_path / "one" / "packing.data").read_bytes())
-        (folder / "in.deck").write_text(in_files(deck(fix=fix, after="restart 3 a.restart b.restart", run="run 60")))
+        (folder / "in.deck").write_text(deck(fix=fix, after="restart 3 a.restart b.restart", run="run 60", dumps=EACH))
         process = subprocess.Popen([FRONT_END, "-in", "in.deck", "-log", "none"], cwd=folder, stdout=subprocess.DEVNULL)
         time.sleep(draws.uniform(0.1, 0.9) * duration)
         process.send_signal(signal.SIGKILL)
@@ -181,5 +168,5 @@ def resumed(folder, fix):
         text = rest_of(path.name, 60, fix=fix)
         if run(text, folder).returncode == 0:
             return snapshots(folder)["grains.60.dump"]
-    run_ok(in_files(deck(fix=fix, run="run 60")), folder)
+    run_ok(deck(fix=fix, run="run 60", dumps=EACH), folder)
     return snapshots(folder)["grains.60.dump"]
