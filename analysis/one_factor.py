@@ -41,6 +41,10 @@ CHOICES = {
     "no momentum": {"options": "momentum 0"},
     "tolerance 0.0015": {"options": "relax tol 0.0015"},
     "tolerance 0.006": {"options": "relax tol 0.006"},
+    "tolerance 0.001, no momentum": {"options": "relax tol 0.001 momentum 0"},
+    "order of time, dz 0.8 d": {"options": f"accuracy exact dz {0.8 * D}"},
+    "order of time, dz 0.4 d": {"options": f"accuracy exact dz {0.4 * D}"},
+    "order of time, dz 0.1 d": {"options": "accuracy exact"},
     "spots of constant w": {"volume": "0"},
 }
 QUANTITIES = {  # name in the comparison -> heading and factor

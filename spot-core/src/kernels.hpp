@@ -12,6 +12,10 @@ namespace spot::kernels {
 /// this, and neighbour lists have room for a multiple of `lanes`.
 constexpr std::uint32_t pack = 4, lanes = 16;
 
+/// Kernels that work on a list of grains fetch what belongs to a grain so many grains before they use it, so such lists
+/// go on with as many that are fetched and not used.
+constexpr std::uint32_t ahead = 8;
+
 /// Lists of neighbours: `capacity` places a point, `size` of them in use; the others hold any valid index.
 struct Lists {
   const std::uint32_t* neighbours;
@@ -23,11 +27,6 @@ struct Lists {
 struct Push {
   float per_square;  ///< 1/d^2 in quanta
   float share;       ///< of the overlap, by which each moves
-};
-
-/// Of the corrections of some grains: the square of the longest, and how deep the deepest overlap was (as in a push).
-struct Corrections {
-  float longest_squared, depth;
 };
 
 /// One build of all kernels. They are compiled several times, for different instruction sets, from kernels.inl; results
@@ -46,10 +45,10 @@ struct Kernels {
   void (*push_off_neighbours)(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                               const Push& push, Point* pushes);
 
-  /// Corrects n grains: each moves by its push and by the part `kept` of its last correction, cut to whole quanta, and
-  /// remembers that as its last.
-  Corrections (*correct)(Point* points, Point* last, const std::uint32_t* grains, std::size_t n, const Point* pushes,
-                         float kept);
+  /// Corrects the grains of some cells, one cell after the other, `in_cell` of them in each: a grain moves by its push
+  /// and by the part `kept` of its last correction, cut to whole quanta, and remembers that as its last.
+  void (*correct)(Point* points, Point* last, const std::uint32_t* grains, const std::uint8_t* in_cell,
+                  std::size_t cells, const Point* pushes, float kept, Corrections* corrections);
 
   /// Writes first, first + 1, ... of those of n points, empty ones apart, that are within reach of `centre`; returns
   /// how many. `found` has room for all of them.

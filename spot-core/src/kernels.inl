@@ -8,7 +8,8 @@
 namespace {
 
 using spot::Point;
-using spot::kernels::Corrections;
+using spot::kernels::ahead;
+using spot::Corrections;
 using spot::kernels::Lists;
 
 /// Differences of states are seen only where an empty place is on one side.
@@ -83,20 +84,21 @@ std::int32_t kept_of(std::int32_t last, float kept) {
   return static_cast<std::int32_t>(static_cast<float>(last) * kept);
 }
 
-Corrections correct(Point* points, Point* last, const std::uint32_t* grains, std::size_t n, const Point* pushes,
-                    float kept) {
-  Corrections corrections = {0.0f, 0.0f};
-  for (std::size_t i = 0; i < n; ++i) {
-    Point& by = last[grains[i]];
-    by = {pushes[i].x + kept_of(by.x, kept), pushes[i].y + kept_of(by.y, kept), pushes[i].z + kept_of(by.z, kept), 0};
-    add(points[grains[i]], by.x, by.y, by.z);
-    const float squared = square_distance(by, {0, 0, 0, 0}, -1);
-    if (squared > corrections.longest_squared) corrections.longest_squared = squared;
-    float depth;
-    __builtin_memcpy(&depth, &pushes[i].state, sizeof depth);
-    if (depth > corrections.depth) corrections.depth = depth;
+void correct(Point* points, Point* last, const std::uint32_t* grains, const std::uint8_t* in_cell, std::size_t cells,
+             const Point* pushes, float kept, Corrections* corrections) {
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    corrections[cell] = {0.0f, 0.0f};
+    for (std::uint32_t k = 0; k < in_cell[cell]; ++k, ++grains, ++pushes) {
+      Point& by = last[*grains];
+      by = {pushes->x + kept_of(by.x, kept), pushes->y + kept_of(by.y, kept), pushes->z + kept_of(by.z, kept), 0};
+      add(points[*grains], by.x, by.y, by.z);
+      const float squared = square_distance(by, {0, 0, 0, 0}, -1);
+      if (squared > corrections[cell].longest_squared) corrections[cell].longest_squared = squared;
+      float depth;
+      __builtin_memcpy(&depth, &pushes->state, sizeof depth);
+      if (depth > corrections[cell].depth) corrections[cell].depth = depth;
+    }
   }
-  return corrections;
 }
 
 std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found) {
@@ -125,24 +127,27 @@ inline float float_of(std::int32_t bits) {
   return value;
 }
 
-Corrections correct(Point* points, Point* last, const std::uint32_t* grains, std::size_t n, const Point* pushes,
-                    float kept) {
+void correct(Point* points, Point* last, const std::uint32_t* grains, const std::uint8_t* in_cell, std::size_t cells,
+             const Point* pushes, float kept, Corrections* corrections) {
   constexpr Quarter coordinates = {-1, -1, -1, 0};
-  Quarter greatest = {};  // the bits of a squared length and, last, of a depth
-  for (std::size_t i = 0; i < n; ++i) {
-    Point &point = points[grains[i]], &by = last[grains[i]];
-    const Quarter push = load_point(pushes[i]);
-    const QuarterFloats carried = __builtin_convertvector(load_point(by), QuarterFloats) * kept;
-    const Quarter step = (push + __builtin_convertvector(carried, Quarter)) & coordinates;
-    store_point(step, by);
-    store_point(load_point(point) + step, point);
-    const QuarterFloats f = __builtin_convertvector(step, QuarterFloats), squares = f * f;
-    const QuarterFloats pairs = squares + __builtin_shufflevector(squares, squares, 1, 0, 3, 2);
-    const QuarterFloats squared = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
-    // Floats that are not negative are in the order of their bits.
-    greatest = greater(greatest, __builtin_shufflevector((Quarter)squared, push, 0, 0, 0, 7));
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    Quarter greatest = {};  // the bits of a squared length and, last, of a depth
+    for (std::uint32_t k = 0; k < in_cell[cell]; ++k, ++grains, ++pushes) {
+      __builtin_prefetch(last + grains[ahead], 1);
+      Point &point = points[*grains], &by = last[*grains];
+      const Quarter push = load_point(*pushes);
+      const QuarterFloats carried = __builtin_convertvector(load_point(by), QuarterFloats) * kept;
+      const Quarter step = (push + __builtin_convertvector(carried, Quarter)) & coordinates;
+      store_point(step, by);
+      store_point(load_point(point) + step, point);
+      const QuarterFloats f = __builtin_convertvector(step, QuarterFloats), squares = f * f;
+      const QuarterFloats pairs = squares + __builtin_shufflevector(squares, squares, 1, 0, 3, 2);
+      const QuarterFloats squared = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
+      // Floats that are not negative are in the order of their bits.
+      greatest = greater(greatest, __builtin_shufflevector((Quarter)squared, push, 0, 0, 0, 7));
+    }
+    corrections[cell] = {float_of(greatest[0]), float_of(greatest[3])};
   }
-  return {float_of(greatest[0]), float_of(greatest[3])};
 }
 
 #ifdef __AVX512F__
@@ -285,9 +290,6 @@ inline Quarter reduce(Pack x, Pack y, Pack z, Floats s) {
   return sums;
 }
 
-/// Lists are fetched this many grains before they are used: they do not fit into the nearer caches.
-constexpr std::size_t ahead = 8;
-
 void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                          const spot::kernels::Push& push, Point* pushes) {
   const Floats per_square = all(push.per_square), share = all(push.share), zero = all(0.0f);
@@ -297,8 +299,7 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
     Pack push_x = {}, push_y = {}, push_z = {};
     Floats depth = zero;
     const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
-    if (i + ahead < n)
-      __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i + ahead]) * lists.capacity);
+    __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i + ahead]) * lists.capacity);
     const std::int32_t size = lists.size[grains[i]];
     for (std::int32_t k = 0; k < size; k += static_cast<std::int32_t>(width), list += width) {
       // As many points as a pack has numbers, turned into their x, y and z.

@@ -141,7 +141,7 @@ void TiledPacking::add_neighbour(std::uint32_t slot, std::uint32_t neighbour) {
     const std::uint32_t longer = 2 * list_capacity_;
     if (longer > 128)
       throw InvalidPacking(message("a grain has more than ", list_capacity_, " neighbours: the packing has collapsed"));
-    std::vector<std::uint32_t> lists(points_.size() * longer, 0);
+    AlignedVector<std::uint32_t> lists(points_.size() * longer, 0);
     for (std::size_t s = 0; s < points_.size(); ++s)
       std::copy_n(lists_.begin() + static_cast<std::ptrdiff_t>(s * list_capacity_), list_size_[s],
                   lists.begin() + static_cast<std::ptrdiff_t>(s * longer));

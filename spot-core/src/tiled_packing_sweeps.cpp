@@ -45,7 +45,7 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
   std::int64_t swept = 0;
   float depth = 0.0f;
   for (const Share& share : shares_) {
-    swept += static_cast<std::int64_t>(share.active.size());
+    swept += share.grains;
     depth = std::max(depth, share.depth);
   }
   overlap_swept_ = 1.0 - std::sqrt(1.0 - static_cast<double>(depth));
@@ -53,7 +53,7 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
 }
 
 void TiledPacking::collect(Share& share) const {
-  share.active.resize(static_cast<std::size_t>(share.last - share.first) * capacity_);
+  share.active.resize(static_cast<std::size_t>(share.last - share.first) * capacity_ + kernels::ahead);
   share.walled.clear();
   share.in_cell.clear();
   std::uint32_t n = 0;
@@ -68,15 +68,16 @@ void TiledPacking::collect(Share& share) const {
     for (std::uint32_t place = before; place < n; ++place)
       if (near_wall_[share.active[place]] != 0) share.walled.push_back(place);
   }
-  share.active.resize(n);
+  share.grains = n;
+  std::fill_n(share.active.begin() + n, kernels::ahead, 0u);
 }
 
 void TiledPacking::push_apart(Share& share, const RelaxationParameters& parameters, const Container& container) const {
   collect(share);
-  share.pushes.resize(share.active.size());
+  share.pushes.resize(share.grains);
   const double diameter = diameter_ / quantum_.length();
   kernels_->push_off_neighbours(
-      points_.data(), share.active.data(), share.active.size(), {lists_.data(), list_size_.data(), list_capacity_},
+      points_.data(), share.active.data(), share.grains, {lists_.data(), list_size_.data(), list_capacity_},
       {static_cast<float>(1.0 / (diameter * diameter)), static_cast<float>(parameters.pair_share())},
       share.pushes.data());
   part_coincident(share, parameters.pair_share() * diameter_);
@@ -86,7 +87,7 @@ void TiledPacking::push_apart(Share& share, const RelaxationParameters& paramete
 
 /// Centres that coincide have no line between them; part them along x, by id so that both agree.
 void TiledPacking::part_coincident(Share& share, double by) const {
-  for (std::size_t k = 0; k < share.active.size(); ++k) {
+  for (std::size_t k = 0; k < share.grains; ++k) {
     if (depth_of(share.pushes[k]) < 1.0f) continue;
     const std::uint32_t i = share.active[k];
     for (std::uint32_t l = 0; l < list_size_[i]; ++l) {
@@ -105,13 +106,13 @@ void TiledPacking::push(Point& point, const Vector3& by) const {
 }
 
 void TiledPacking::apply(Share& share, int due, float deepest, float momentum) {
-  std::size_t k = 0;
+  share.corrections.resize(share.in_cell.size());
+  kernels_->correct(points_.data(), momenta_.data(), share.active.data(), share.in_cell.data(), share.in_cell.size(),
+                    share.pushes.data(), momentum, share.corrections.data());
   share.depth = 0.0f;
   for (std::uint32_t c = share.first; c < share.last; ++c) {
-    const std::uint32_t cell = due_cells_[c], n = share.in_cell[c - share.first];
-    const kernels::Corrections corrections = kernels_->correct(points_.data(), momenta_.data(), share.active.data() + k,
-                                                               n, share.pushes.data() + k, momentum);
-    k += n;
+    const std::uint32_t cell = due_cells_[c];
+    const Corrections& corrections = share.corrections[c - share.first];
     share.depth = std::max(share.depth, corrections.depth);
     account_[cell] -= due;
     if (corrections.depth > deepest) account_[cell] = std::max(account_[cell], due);

@@ -18,4 +18,9 @@ struct alignas(16) Point {
   static constexpr std::int32_t free = 0, held = 1 << 29, empty = 1 << 30;
 };
 
+/// Of the corrections in a cell: the square of the longest, and how deep the deepest overlap was (as in a push).
+struct Corrections {
+  float longest_squared, depth;
+};
+
 }  // namespace spot

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "spot/aligned_vector.hpp"
 #include "spot/bytes.hpp"
 #include "spot/communicator.hpp"
 #include "spot/container.hpp"
@@ -117,10 +118,12 @@ class TiledPacking {
   /// What one worker has to do in a sweep.
   struct Share {
     std::uint32_t first, last;          // of due_cells_
-    std::vector<std::uint32_t> active;  // slots, cell by cell
+    std::uint32_t grains;               // in them
+    std::vector<std::uint32_t> active;  // their slots, cell by cell, and kernels::ahead more
     std::vector<std::uint8_t> in_cell;  // how many of them are in each cell
     std::vector<std::uint32_t> walled;  // places in `active` of those near walls
     std::vector<Point> pushes;
+    std::vector<Corrections> corrections;  // of each cell
     float depth;  // of the deepest overlap, as in a push
   };
 
@@ -239,13 +242,13 @@ class TiledPacking {
   std::array<std::vector<Place>, 2> changed_;  // what has come, gone or been listed anew where others hold copies
   std::array<Bytes, 2> migrants_;              // grains that go to the ranks below and above
 
-  std::vector<Point> points_, references_;
-  std::vector<Point> momenta_;                // the last correction, as far as it is carried on
+  AlignedVector<Point> points_, references_;
+  AlignedVector<Point> momenta_;              // the last correction, as far as it is carried on
   std::vector<std::int64_t> ids_;             // -1 in empty slots
   std::vector<TouchingPlane> planes_;         // the container's axis planes, unless there are too many
   std::vector<std::uint8_t> near_wall_;       // a bit for each of these; the highest for all other walls
   std::vector<std::uint8_t> cell_near_wall_;  // has any grain of this cell ever been near one?
-  std::vector<std::uint32_t> lists_;
+  AlignedVector<std::uint32_t> lists_;
   std::vector<std::uint8_t> list_size_;
   std::vector<std::uint8_t> marks_;    // of slots, zero between uses
   std::vector<std::int32_t> account_;  // in parts of a move
