@@ -25,7 +25,7 @@ using spot::kernels::Kernels;
 
 constexpr double diameter_in_metres = 0.003;
 constexpr double quanta = 16777216.0;  // in a diameter, as TiledPacking has them
-constexpr double radius = 2.6, influence = 2.5e-3, step_height = 0.8, diffusion_length = 1.25;
+constexpr double radius = 3.53, influence = 2.5e-3, step_height = 0.8, diffusion_length = 1.25;
 
 std::vector<spot::Grain> read_grains() {
   const std::string command = "gzip -dc " SPOT_BENCHMARK_PACKING;
@@ -56,9 +56,9 @@ struct Tiles {
 
   std::array<int, 3> cells = {};
   Vector3 low;
-  std::vector<Point> points;
+  spot::AlignedVector<Point> points;
   std::vector<std::uint32_t> grains;  // slots of them
-  std::vector<std::uint32_t> lists;
+  spot::AlignedVector<std::uint32_t> lists;
   std::vector<std::uint8_t> list_size;
 
   Tiles() {
@@ -166,14 +166,25 @@ void per_sphere(benchmark::State& state, double range, Kernel kernel) {
   state.counters["grains"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
 }
 
-/// A move: 2.6 d around its middle; every second round they go back, so that the packing stays.
+/// A move: the points around its middle; every second round they go back, so that the packing stays.
 void displace(benchmark::State& state, const Kernels& kernels) {
-  std::vector<Point> points = tiles().points;
+  spot::AlignedVector<Point> points = tiles().points;
   const auto radius_squared = static_cast<float>(radius * radius * quanta * quanta);
   per_sphere(state, radius, [&](std::uint32_t first, std::uint32_t n, const Point& centre, std::size_t round) {
     const std::int32_t sign = round % 2 == 0 ? 1 : -1;
-    return static_cast<std::size_t>(
-        kernels.displace(points.data() + first, n, centre, radius_squared, {sign * 80000, 0, -sign * 33000, 0}));
+    kernels.displace(points.data() + first, n, centre, {radius_squared, 1.0f / radius_squared},
+                     {sign * 80000, 0, -sign * 33000, 0});
+    return n;
+  });
+}
+
+/// The shares in a move.
+void enclosed_shares(benchmark::State& state, const Kernels& kernels) {
+  const auto radius_squared = static_cast<float>(radius * radius * quanta * quanta);
+  per_sphere(state, radius, [&](std::uint32_t first, std::uint32_t n, const Point& centre, std::size_t) {
+    return static_cast<std::size_t>(kernels.enclosed_shares(tiles().points.data() + first, n, centre,
+                                                            {radius_squared, 1.0f / radius_squared})) /
+           spot::whole_share;
   });
 }
 
@@ -190,8 +201,10 @@ void find_within(benchmark::State& state, const Kernels& kernels) {
 void push_off_neighbours(benchmark::State& state, const Kernels& kernels) {
   const Tiles& all = tiles();
   std::vector<Point> pushes(all.grains.size());
+  std::vector<std::uint32_t> grains = all.grains;
+  grains.resize(grains.size() + spot::kernels::ahead, 0);
   for (auto _ : state) {
-    kernels.push_off_neighbours(all.points.data(), all.grains.data(), all.grains.size(),
+    kernels.push_off_neighbours(all.points.data(), grains.data(), all.grains.size(),
                                 {all.lists.data(), all.list_size.data(), Tiles::list_capacity},
                                 {static_cast<float>(1.0 / (quanta * quanta)), 0.6f}, pushes.data());
     benchmark::DoNotOptimize(pushes.data());
@@ -202,7 +215,7 @@ void push_off_neighbours(benchmark::State& state, const Kernels& kernels) {
 
 /// One cell of eight slots.
 void farthest(benchmark::State& state, const Kernels& kernels) {
-  std::vector<Point> moved = tiles().points;
+  spot::AlignedVector<Point> moved = tiles().points;
   for (Point& point : moved) point.x += 1000;
   std::size_t place = 0;
   for (auto _ : state) {
@@ -237,8 +250,13 @@ void moves_of_a_window(benchmark::State& state) {
   Silo silo;
   const auto n = static_cast<std::size_t>(state.range(0));
   const double dx = spot::step_width_for(diffusion_length, step_height);
+  spot::SpotParameters spots{radius, influence};
+  spots.profile = spot::InfluenceProfile::parabolic;
   std::vector<std::vector<spot::Move>> windows(16);
-  std::vector<int> moved;
+  std::size_t shares_moved = 0;
+  const auto weigh = [&shares_moved](const std::vector<int>& shares, std::vector<spot::Move>&) {
+    for (const int share : shares) shares_moved += static_cast<std::size_t>(share);
+  };
   const auto places = middles(n * windows.size() / 2);
   for (std::size_t k = 0; k < places.size(); ++k) {
     spot::Move move{};
@@ -249,15 +267,14 @@ void moves_of_a_window(benchmark::State& state) {
     move.step = -move.step;
     windows[k / n * 2 + 1].push_back(move);
   }
-  std::size_t window = 0, grains_moved = 0;
+  std::size_t window = 0;
   for (auto _ : state) {
-    silo.packing.displace(windows[window], radius, influence, *silo.container, silo.workers, moved);
-    for (const int count : moved) grains_moved += static_cast<std::size_t>(count);
+    silo.packing.displace(windows[window], spots, weigh, *silo.container, silo.workers);
     window = (window + 1) % windows.size();
   }
   const auto moves = static_cast<double>(state.iterations()) * static_cast<double>(n);
   state.SetItemsProcessed(static_cast<std::int64_t>(moves));
-  state.counters["grains_per_move"] = static_cast<double>(grains_moved) / moves;
+  state.counters["grains_per_move"] = static_cast<double>(shares_moved) / spot::whole_share / moves;
 }
 
 /// Sweeps over all cells, with collecting the grains, walls and applying the pushes.
@@ -280,6 +297,7 @@ void register_kernels(const Kernels& kernels) {
                                  [run, &kernels](benchmark::State& state) { run(state, kernels); });
   };
   add("displace_a_move", displace);
+  add("shares_in_a_move", enclosed_shares);
   add("find_within_a_sphere", find_within);
   add("push_off_all_neighbours", push_off_neighbours);
   add("farthest_in_a_cell", farthest);

@@ -182,6 +182,12 @@ const std::map<std::string, Reader>& readers() {
              w, "strength",
              {{"half", spot::RelaxationStrength::half_each}, {"full", spot::RelaxationStrength::full_each}});
        }},
+      {"profile",
+       [](SpotCommand& c, Words& w) {
+         c.spots.profile = one_of<spot::InfluenceProfile>(
+             w, "profile",
+             {{"uniform", spot::InfluenceProfile::uniform}, {"parabolic", spot::InfluenceProfile::parabolic}});
+       }},
       {"alpha", [](SpotCommand& c, Words& w) { c.alpha = w.positive("alpha"); }},
       {"momentum", [](SpotCommand& c, Words& w) { c.momentum = w.not_negative("the momentum"); }},
       {"volume", [](SpotCommand& c, Words& w) { c.spots.fixed_volume = w.not_negative("the number of grains"); }},
@@ -226,32 +232,36 @@ SpotCommand parse_spot_command(const std::vector<std::string>& list) {
   return command;
 }
 
+double SpotCommand::radius_in_diameters(spot::InfluenceProfile profile) {
+  return profile == spot::InfluenceProfile::uniform ? 2.6 : 3.53;
+}
+
 double SpotCommand::step_height_in_diameters(Accuracy accuracy) { return accuracy == Accuracy::exact ? 0.1 : 0.8; }
 
-spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy) {
+spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile) {
   // Chosen from the curves of benchmarks/time_vs_error.py. More momentum and a larger alpha are cheaper for the same
-  // overlaps, but take g(r) away from DEM's.
+  // overlaps, but take g(r) away from DEM's, from less on if spots are uniform.
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
   relaxation.tolerance = fast ? 5e-3 : 2.9e-3;
   relaxation.alpha = fast ? 1.2 : 0.8;
-  relaxation.momentum = fast ? 0.7 : 0.6;
+  relaxation.momentum = profile == spot::InfluenceProfile::parabolic ? 0.8 : fast ? 0.7 : 0.6;
   return relaxation;
 }
 
 void SpotCommand::resolve(double diameter) {
-  const spot::RelaxationParameters chosen = relaxation_of(accuracy);
+  const spot::RelaxationParameters chosen = relaxation_of(accuracy, spots.profile);
   time_ordered = time_ordered.value_or(accuracy == Accuracy::exact);
   relaxation.tolerance = tolerance.value_or(chosen.tolerance);
   // The schedules of 2006 and 2010 go with their alpha.
-  relaxation.alpha = alpha.value_or(relaxation_of(*time_ordered ? Accuracy::exact : accuracy).alpha);
+  relaxation.alpha = alpha.value_or(relaxation_of(*time_ordered ? Accuracy::exact : accuracy, spots.profile).alpha);
   relaxation.momentum = *time_ordered ? 0.0 : momentum.value_or(chosen.momentum);
-  if (spots.radius == 0.0) spots.radius = 2.6 * diameter;
+  if (spots.radius == 0.0) spots.radius = radius_in_diameters(spots.profile) * diameter;
   if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
   spots.step_width = spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height);
   side_buffer = side_buffer.value_or(0.5 * diameter);
-  base_buffer = base_buffer.value_or(diameter);
+  base_buffer = base_buffer.value_or(2.5 * diameter);
   outlet = outlet.value_or(orifice->centre.z());
 }
 
@@ -272,6 +282,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
   return {{"walls", text_of_walls(walls)},
           {"orifice", precise(centre.x(), ' ', centre.y(), ' ', centre.z(), ' ', orifice->radius)},
           {"radius", precise(spots.radius)},
+          {"profile", spots.profile == spot::InfluenceProfile::uniform ? "uniform" : "parabolic"},
           {"influence", precise(spots.influence)},
           {"dz", precise(spots.step_height)},
           {"diffusion", precise(spots.diffusion_length())},

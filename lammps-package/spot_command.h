@@ -51,13 +51,16 @@ struct SpotCommand {
   double largest_overlap = 0.03;  // in diameters
   int average = 100;              // steps over which the outflow is averaged
 
-  /// Fills in what was left open: radius 2.6 d, diffusion length 1.25 d, buffers of 1 d, outlet at the orifice, and
-  /// what `accuracy` decides.
+  SpotCommand() { spots.profile = spot::InfluenceProfile::parabolic; }
+
+  /// Fills in what was left open: the radius that goes with the profile, diffusion length 1.25 d, buffers of 0.5 d from
+  /// side walls and 2.5 d from the base, outlet at the orifice, and what `accuracy` decides.
   void resolve(double diameter);
 
   /// The parameters of an accuracy.
+  static double radius_in_diameters(spot::InfluenceProfile profile);
   static double step_height_in_diameters(Accuracy accuracy);
-  static spot::RelaxationParameters relaxation_of(Accuracy accuracy);
+  static spot::RelaxationParameters relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile);
 
   /// All that decides where grains and spots go, as text, once it is resolved. `threads` and `average` are not in it.
   std::vector<std::pair<std::string, std::string>> settings() const;

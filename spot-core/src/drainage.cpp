@@ -58,7 +58,7 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
   parameters_.validate();
   relaxation_parameters_.validate();
   require_steps(parameters_, diameter);
-  container_->require_entrance(spots.radius);
+  container_->require_entrance(spots.equivalent_radius());
   const double base = container_->orifice().centre.z();
   // A newborn spot is 2 R_s tall, and the middle of its first step is half a step higher.
   const double lowest_reached = base - 2.0 * spots.radius + 0.5 * spots.step_height;

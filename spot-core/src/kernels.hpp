@@ -35,8 +35,11 @@ struct Push {
 struct Kernels {
   const char* instruction_set;
 
-  /// Adds `by` to the free points within a radius of `middle`; returns how many.
-  int (*displace)(Point* points, std::size_t n, const Point& middle, float radius_squared, const Point& by);
+  /// The shares of the points in a move around `middle`, together, each cut to whole parts (whole_share).
+  int (*enclosed_shares)(const Point* points, std::size_t n, const Point& middle, const Reach& reach);
+
+  /// Adds to every point its share of `by`, cut to whole quanta.
+  void (*displace)(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by);
 
   /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
   /// the line of centres for r < d, each component cut to whole quanta. (d - r) / r is expanded in s = 1 - r^2/d^2,

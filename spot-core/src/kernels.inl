@@ -11,6 +11,10 @@ using spot::Point;
 using spot::kernels::ahead;
 using spot::Corrections;
 using spot::kernels::Lists;
+using spot::Reach;
+
+/// Of a whole share.
+constexpr float parts = spot::whole_share;
 
 /// Differences of states are seen only where an empty place is on one side.
 constexpr std::int32_t only_empty = Point::empty;
@@ -29,14 +33,24 @@ void add(Point& point, std::int32_t x, std::int32_t y, std::int32_t z) {
   point.z += z;
 }
 
-int displace(Point* points, std::size_t n, const Point& middle, float radius_squared, const Point& by) {
-  int moved = 0;
+float share(const Point& point, const Point& middle, const Reach& reach) {
+  const float linear = (reach.radius_squared - square_distance(point, middle, -1)) * reach.per_square;
+  return linear > 0.0f ? linear < 1.0f ? linear : 1.0f : 0.0f;
+}
+
+int enclosed_shares(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+  int shares = 0;
+  for (std::size_t i = 0; i < n; ++i) shares += static_cast<int>(share(points[i], middle, reach) * parts);
+  return shares;
+}
+
+void displace(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by) {
+  const float x = static_cast<float>(by.x), y = static_cast<float>(by.y), z = static_cast<float>(by.z);
   for (std::size_t i = 0; i < n; ++i) {
-    if (!(square_distance(points[i], middle, -1) <= radius_squared)) continue;
-    add(points[i], by.x, by.y, by.z);
-    ++moved;
+    const float part = share(points[i], middle, reach);
+    add(points[i], static_cast<std::int32_t>(part * x), static_cast<std::int32_t>(part * y),
+        static_cast<std::int32_t>(part * z));
   }
-  return moved;
 }
 
 std::size_t find_within(const Point* points, std::size_t n, const Point& centre, float reach_squared,
@@ -238,17 +252,30 @@ inline Floats squares(Pack points) {
   return pairs + swap_pairs(pairs);
 }
 
-int displace(Point* points, std::size_t n, const Point& middle, float radius_squared, const Point& by) {
-  const Pack centre = repeat(load_point(middle)), step = repeat(load_point(by));
-  const Floats limit = all(radius_squared);
-  Pack moved = {};
+inline Floats shares(Pack points, Pack middle, Floats radius_squared, Floats per_square) {
+  const Floats zero = all(0.0f), one = all(1.0f);
+  const Floats linear = (radius_squared - squares(points - middle)) * per_square;
+  const Floats positive = linear > zero ? linear : zero;
+  return positive < one ? positive : one;
+}
+
+int enclosed_shares(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+  const Pack centre = repeat(load_point(middle));
+  const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square);
+  Pack sum = {};
+  for (std::size_t i = 0; i < n; i += points_in_pack)
+    sum += whole(shares(load(points + i), centre, radius_squared, per_square) * parts);
+  return add_parts(sum)[0];
+}
+
+void displace(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by) {
+  const Pack centre = repeat(load_point(middle));
+  const Floats step = floats(repeat(load_point(by)));
+  const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square);
   for (std::size_t i = 0; i < n; i += points_in_pack) {
     const Pack p = load(points + i);
-    const Pack inside = squares(p - centre) <= limit;  // all ones or all zeros
-    store(p + (inside & step), points + i);
-    moved -= inside;
+    store(p + whole(step * shares(p, centre, radius_squared, per_square)), points + i);
   }
-  return add_parts(moved)[0];
 }
 
 std::size_t find_within(const Point* points, std::size_t n, const Point& centre, float reach_squared,
@@ -340,7 +367,7 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 namespace spot::kernels {
 
 extern const Kernels SPOT_KERNELS;
-const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &displace, &push_off_neighbours, &correct,
-                              &find_within,         &farthest, &find_reached};
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_shares, &displace, &push_off_neighbours,
+                              &correct,             &find_within,     &farthest, &find_reached};
 
 }  // namespace spot::kernels

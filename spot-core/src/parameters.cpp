@@ -18,8 +18,10 @@ void require_positive(const char* name, double value) {
 
 double SpotParameters::spot_volume(double packing_fraction) const {
   const double pi = 3.14159265358979323846;
-  return influence * packing_fraction * 4.0 / 3.0 * pi * radius * radius * radius;
+  return influence * mean_share() * packing_fraction * 4.0 / 3.0 * pi * radius * radius * radius;
 }
+
+double SpotParameters::equivalent_radius() const { return radius * std::cbrt(mean_share()); }
 
 void SpotParameters::validate() const {
   require_positive("spot radius", radius);

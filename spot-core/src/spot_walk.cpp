@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/spot_walk.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "spot/random.hpp"
@@ -37,7 +38,7 @@ Vector3 step_vector(const SpotParameters& p, double uniform) {
 
 SpotWalk::SpotWalk(const SpotParameters& parameters, const Container& container) : parameters_(parameters) {
   parameters_.validate();
-  container.require_entrance(parameters_.radius);
+  container.require_entrance(parameters_.equivalent_radius());
 }
 
 double SpotWalk::time_before_birth(std::int64_t id) const {
@@ -47,7 +48,7 @@ double SpotWalk::time_before_birth(std::int64_t id) const {
 Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) const {
   const auto numbers = numbers_of_birth(parameters_, id);
   const Orifice& orifice = container.orifice();
-  const double from_axis = (orifice.radius - parameters_.radius) * std::sqrt(numbers[1]);
+  const double from_axis = std::max(0.0, orifice.radius - parameters_.radius) * std::sqrt(numbers[1]);
   const double angle = 2.0 * 3.14159265358979323846 * numbers[2];
   Spot spot{id, 0, orifice.centre, time};
   spot.position += Vector3(from_axis * std::cos(angle), from_axis * std::sin(angle), -parameters_.radius);

@@ -40,32 +40,51 @@ double TiledPacking::reach_of_move(double radius) const {
   return radius + 0.5 * skin_ + leeway_in_diameters * diameter_;
 }
 
-void TiledPacking::displace(const std::vector<Move>& moves, double radius, double influence, const Container& container,
-                            Workers& workers, std::vector<int>& moved) {
-  require_radius(radius, diameter_);
-  const double quantum = quantum_.length();
-  const auto radius_squared = static_cast<float>(square(radius / quantum));
-  const auto limit = static_cast<std::int32_t>((0.5 * skin_ + leeway_in_diameters * diameter_) / quantum);
-  const int first_layer = first_layer_ + border_[0], last_layer = first_layer + rank_layers();
-  moved.assign(moves.size(), 0);
-  middles_.clear();
+void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spots, const Weigh& weigh,
+                            const Container& container, Workers& workers) {
+  require_radius(spots.radius, diameter_);
+  const auto limit = static_cast<std::int32_t>((0.5 * skin_ + leeway_in_diameters * diameter_) / quantum_.length());
+  find_moves(moves, spots);
+  find_shares(workers);
+  weigh(shares_, moves);
   steps_.clear();
-  rows_.clear();
-  end_of_rows_.clear();
-  for (const Move& move : moves) {
-    middles_.push_back(wrapped(move.middle - low_));
-    steps_.push_back(wrapped(-influence * move.weight * move.step));
-    find_rows(move.middle - low_, reach_of_move(radius), first_layer, last_layer, rows_);
-    end_of_rows_.push_back(rows_.size());
-  }
+  for (const Move& move : moves) steps_.push_back(wrapped(-spots.influence * move.weight * move.step));
   for (std::size_t first = 0;;) {
     const std::size_t end = end_before_a_look(moves, first, limit);
     for (std::size_t m = first; m < end; ++m) charge(m);
-    apply_moves(first, end, radius_squared, workers, moved);
+    apply_moves(first, end, workers);
     update_lists(container);
     first = end;
     if (!look_) return;
   }
+}
+
+/// Where the moves are, and the rows of this rank's cells that they may reach.
+void TiledPacking::find_moves(const std::vector<Move>& moves, const SpotParameters& spots) {
+  const int first_layer = first_layer_ + border_[0], last_layer = first_layer + rank_layers();
+  const double radius_squared = square(spots.radius / quantum_.length());
+  reach_.radius_squared = static_cast<float>(radius_squared);
+  reach_.per_square = spots.profile == InfluenceProfile::uniform ? 1.0f : static_cast<float>(1.0 / radius_squared);
+  middles_.clear();
+  rows_.clear();
+  end_of_rows_.clear();
+  for (const Move& move : moves) {
+    middles_.push_back(wrapped(move.middle - low_));
+    find_rows(move.middle - low_, reach_of_move(spots.radius), first_layer, last_layer, rows_);
+    end_of_rows_.push_back(rows_.size());
+  }
+}
+
+void TiledPacking::find_shares(Workers& workers) {
+  const std::size_t n = middles_.size(), tasks = static_cast<std::size_t>(workers.size());
+  shares_.assign(n, 0);
+  workers.run([&](int worker) {
+    const auto w = static_cast<std::size_t>(worker);
+    for (std::size_t m = n * w / tasks; m < n * (w + 1) / tasks; ++m)
+      for (std::size_t r = first_row(m); r < end_of_rows_[m]; ++r)
+        shares_[m] += kernels_->enclosed_shares(points_.data() + rows_[r].first * capacity_,
+                                                (rows_[r].last - rows_[r].first) * capacity_, middles_[m], reach_);
+  });
 }
 
 /// The end of the moves that can be applied before grains may be too far from their references for the next, on any
@@ -104,26 +123,18 @@ void TiledPacking::charge(std::size_t move) {
       account_[cell] = std::min(account_[cell] + parts_of_move, deepest_in_debt);
 }
 
-void TiledPacking::apply_moves(std::size_t first, std::size_t last, float radius_squared, Workers& workers,
-                               std::vector<int>& moved) {
+void TiledPacking::apply_moves(std::size_t first, std::size_t last, Workers& workers) {
   // A worker owns some layers of the grid, and applies all moves in them, in order.
   const auto n = static_cast<std::uint32_t>(workers.size());
-  moved_by_.resize(n);
   workers.run([&](int worker) {
-    const auto w = static_cast<std::uint32_t>(worker);
-    std::vector<int>& counts = moved_by_[w];
-    counts.assign(last - first, 0);
     for (std::size_t m = first; m < last; ++m)
       for (std::size_t r = first_row(m); r < end_of_rows_[m]; ++r) {
         const Row& row = rows_[r];
-        if (n > 1 && row.first / cells_in_layer() % n != w) continue;
-        counts[m - first] +=
-            kernels_->displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middles_[m],
-                               radius_squared, steps_[m]);
+        if (n > 1 && row.first / cells_in_layer() % n != static_cast<std::uint32_t>(worker)) continue;
+        kernels_->displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middles_[m],
+                           reach_, steps_[m]);
       }
   });
-  for (const std::vector<int>& counts : moved_by_)
-    for (std::size_t m = first; m < last; ++m) moved[m] += counts[m - first];
 }
 
 }  // namespace spot

@@ -58,27 +58,27 @@ void TiledPacking::mark_near_walls(const Container& container) {
     if (ids_[slot] >= 0) mark_near_wall(slot, container);
 }
 
-void TiledPacking::push_off_planes(Share& share, float strength) const {
-  for (const std::uint32_t k : share.walled) {
-    const std::uint32_t slot = share.active[k];
+void TiledPacking::push_off_planes(Task& task, float strength) const {
+  for (const std::uint32_t k : task.walled) {
+    const std::uint32_t slot = task.active[k];
     for (std::size_t p = 0; p < planes_.size(); ++p) {
       if ((near_wall_[slot] >> p & 1u) == 0) continue;
       const TouchingPlane& plane = planes_[p];
       const std::int32_t beyond = minus(points_[slot].*plane.axis, plane.at);
       if (plane.grains_below ? beyond > 0 : beyond < 0)
-        share.pushes[k].*plane.axis -= static_cast<std::int32_t>(strength * static_cast<float>(beyond));
+        task.pushes[k].*plane.axis -= static_cast<std::int32_t>(strength * static_cast<float>(beyond));
     }
   }
 }
 
-void TiledPacking::push_off_other_walls(Share& share, double strength, const Container& container) const {
+void TiledPacking::push_off_other_walls(Task& task, double strength, const Container& container) const {
   const double radius = 0.5 * diameter_;
   WallContacts contacts;
-  for (const std::uint32_t k : share.walled) {
-    if ((near_wall_[share.active[k]] & near_other_wall) == 0) continue;
-    other_contacts(container, position(share.active[k]), radius, contacts);
+  for (const std::uint32_t k : task.walled) {
+    if ((near_wall_[task.active[k]] & near_other_wall) == 0) continue;
+    other_contacts(container, position(task.active[k]), radius, contacts);
     for (const WallContact& contact : contacts)
-      push(share.pushes[k], strength * (radius - contact.distance) * contact.normal);
+      push(task.pushes[k], strength * (radius - contact.distance) * contact.normal);
   }
 }
 

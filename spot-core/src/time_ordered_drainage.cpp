@@ -69,11 +69,12 @@ void TimeOrderedDrainage::carry_out(Move move) {
   const double reach = parameters_.radius + relaxation_parameters_.shell * packing_.diameter();
   packing_.find_movable(move.middle, reach, near_);
   if (parameters_.fixed_volume > 0.0)
-    move.weight = fixed_volume_weight(parameters_, move.middle.z() - limits_.outlet, enclosed(move));
-  const int moved = displace(packing_, near_, move, parameters_.radius, parameters_.influence);
+    move.weight = fixed_volume_weight(parameters_, move.middle.z() - limits_.outlet,
+                                      enclosed_shares(packing_, near_, move, parameters_));
+  const int shares = displace(packing_, near_, move, parameters_);
   ++counters_.moves;
-  counters_.grains_moved += moved;
-  if (moved == 0) {
+  counters_.shares_moved += shares;
+  if (shares == 0) {
     // Below the orifice a spot may meet no grains yet; above it, it has come out at the top of the packing.
     if (move.middle.z() > container().orifice().centre.z() + parameters_.radius) population_.remove_last_moved();
     return;
@@ -117,13 +118,6 @@ void TimeOrderedDrainage::relax_everywhere() {
     if (packing_.present(i) && !packing_.held(i)) near_.push_back(i);
   relax(near_);
   ++relaxed_everywhere_;
-}
-
-int TimeOrderedDrainage::enclosed(const Move& move) const {
-  const double squared = parameters_.radius * parameters_.radius;
-  return static_cast<int>(std::count_if(near_.begin(), near_.end(), [&](std::uint32_t i) {
-    return packing_.distance_squared(i, move.middle) <= squared;
-  }));
 }
 
 void TimeOrderedDrainage::take_out_drained() {

@@ -34,7 +34,7 @@ constexpr double longest_flow = 1.0;
 /// Diameters that grains pass through the orifice in this time.
 double flow_through_orifice(const SpotParameters& spots, double time, double diameter, double orifice_radius) {
   constexpr double packing_fraction = 0.58;
-  const double radii = spots.radius / diameter, orifice = orifice_radius / diameter;
+  const double radii = spots.equivalent_radius() / diameter, orifice = orifice_radius / diameter;
   const double enclosed =
       spots.fixed_volume > 0.0 ? spots.fixed_volume : 8.0 * packing_fraction * radii * radii * radii;
   const double grains = time * spots.injection_rate * spots.influence * enclosed;
@@ -63,11 +63,12 @@ void WindowedDrainage::require_fitting_window() const {
           "diameters pass the orifice");
 }
 
-double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tolerance) {
+double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tolerance, double diameter) {
   if (!(tolerance > 0.0) || !std::isfinite(tolerance))
     throw InvalidParameter(message("relaxation tolerance is ", tolerance, " but must be positive and finite"));
   const double displacement = spots.influence * spots.step_width;
-  return std::max(0.1, 12.0 * tolerance * tolerance / (displacement * displacement));
+  const double difference = displacement * displacement * spots.mean_square_difference(diameter);
+  return std::max(0.1, 3.0 * tolerance * tolerance * diameter * diameter / difference);
 }
 
 double WindowedDrainage::positive_window(double window) {
@@ -84,7 +85,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       communicator_(std::move(communicator)),
       workers_(std::make_unique<Workers>(threads)),
       window_(positive_window(window)),
-      due_(moves_until_due(spots, relaxation.tolerance * diameter)),
+      due_(moves_until_due(spots, relaxation.tolerance, diameter)),
       packing_(diameter, extent, limits.outlet, grains, *container_, communicator_),
       walk_(spots, *container_) {
   next_birth_ = walk_.time_before_birth(0);
@@ -101,7 +102,6 @@ void WindowedDrainage::advance_to(double time) {
     walk(until);
     share_turns();
     displace();
-    gather_counts();
     settle();
     relax();
     const std::size_t drained_before = drained_.size();
@@ -115,7 +115,7 @@ void WindowedDrainage::advance_to(double time) {
 void WindowedDrainage::give_birth(double until) {
   while (next_birth_ <= until) {
     const Spot spot = walk_.birth(born_, next_birth_, container());
-    if (here(spot.position)) walkers_.push_back({spot, 1.0, false});
+    if (here(spot.position)) walkers_.push_back({spot, false});
     next_birth_ += walk_.time_before_birth(++born_);
   }
 }
@@ -125,10 +125,8 @@ void WindowedDrainage::walk(double until) {
   for (Walker& walker : walkers_) {
     if (walker.removed) continue;
     const std::size_t first = turns_.size();
-    while (walker.spot.next_step <= until) {
+    while (walker.spot.next_step <= until)
       turns_.push_back({walk_.step(walker.spot, container()), communicator_->rank(), 0});
-      turns_.back().move.weight = walker.weight;
-    }
     for (std::size_t k = first; k < turns_.size(); ++k) turns_[k].owner = packing_.owner(walker.spot.position.z());
   }
 }
@@ -136,24 +134,30 @@ void WindowedDrainage::walk(double until) {
 void WindowedDrainage::displace() {
   moves_.clear();
   for (const Turn& turn : turns_) moves_.push_back(turn.move);
-  packing_.displace(moves_, parameters_.radius, parameters_.influence, container(), *workers_, moved_);
-  for (std::size_t k = 0; k < turns_.size(); ++k) {
-    turns_[k].moved = moved_[k];
-    counters_.grains_moved += moved_[k];
-  }
+  packing_.displace(
+      moves_, parameters_, [this](const auto& shares, auto& moves) { weigh(shares, moves); }, container(), *workers_);
 }
 
-/// What moves tell their spots: their weight from now on, and that there is nothing left above.
+/// `shares`: of this rank's grains.
+void WindowedDrainage::weigh(const std::vector<int>& shares, std::vector<Move>& moves) {
+  for (std::size_t k = 0; k < turns_.size(); ++k) turns_[k].shares = shares[k];
+  gather_shares();
+  for (Turn& turn : turns_)
+    turn.move.weight = fixed_volume_weight(parameters_, turn.move.middle.z() - limits_.outlet, turn.shares);
+  if (parameters_.fixed_volume > 0.0) send_weights();
+  for (std::size_t k = 0; k < turns_.size(); ++k) moves[k].weight = turns_[k].move.weight;
+}
+
+/// What moves tell their spots: that there is nothing left above.
 void WindowedDrainage::settle() {
   const double inside = container().orifice().centre.z() + parameters_.radius;
   auto walker = walkers_.begin();
   for (const Turn& turn : turns_) {
     if (turn.owner != communicator_->rank()) continue;
     ++counters_.moves;
+    counters_.shares_moved += turn.shares;
     while (walker->spot.id < turn.move.spot) ++walker;
-    const double height = turn.move.middle.z();
-    walker->weight = fixed_volume_weight(parameters_, height - limits_.outlet, turn.moved);
-    if (turn.moved > 0 || height <= inside || walker->removed) continue;
+    if (turn.shares > 0 || turn.move.middle.z() <= inside || walker->removed) continue;
     walker->removed = true;
     ++removed_;
   }

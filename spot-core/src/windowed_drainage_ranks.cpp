@@ -10,10 +10,11 @@ namespace {
 
 bool in_order(const Move& a, const Move& b) { return a.spot != b.spot ? a.spot < b.spot : a.number < b.number; }
 
-/// How many grains of a rank a move has moved.
-struct Count {
+/// What ranks tell each other about a move: shares of grains, or its weight.
+template <typename Value>
+struct Told {
   std::int64_t spot, number;
-  std::int64_t moved;
+  Value value;
 };
 
 }  // namespace
@@ -41,8 +42,7 @@ void WindowedDrainage::share_turns() {
   for (const Bytes& bytes : communicator_->exchange(std::move(outgoing))) {
     ByteReader reader(bytes);
     for (auto spots = reader.at_end() ? 0 : reader.take<std::uint64_t>(); spots > 0; --spots) {
-      const Spot spot = take_spot(reader);
-      walkers_.push_back({spot, reader.take<double>(), false});
+      walkers_.push_back({take_spot(reader), false});
     }
     while (!reader.at_end()) {
       const auto owner = reader.take<int>();
@@ -61,7 +61,6 @@ void WindowedDrainage::hand_over(std::vector<Bytes>& outgoing) {
     if (walker.removed || here(walker.spot.position)) return false;
     const auto to = static_cast<std::size_t>(packing_.owner(walker.spot.position.z()));
     append(spots[to], walker.spot);
-    append(spots[to], walker.weight);
     ++number[to];
     return true;
   };
@@ -75,28 +74,52 @@ void WindowedDrainage::hand_over(std::vector<Bytes>& outgoing) {
   }
 }
 
-/// How many grains every move has moved in all, for the rank that its spot belongs to.
-void WindowedDrainage::gather_counts() {
+WindowedDrainage::Turn& WindowedDrainage::turn_of(std::int64_t spot, std::int64_t number) {
+  Move wanted;
+  wanted.spot = spot;
+  wanted.number = number;
+  return *std::lower_bound(turns_.begin(), turns_.end(), wanted,
+                           [](const Turn& turn, const Move& move) { return in_order(turn.move, move); });
+}
+
+/// The shares of all ranks' grains in a move, for the rank that its spot belongs to.
+void WindowedDrainage::gather_shares() {
   if (communicator_->size() == 1) return;
   std::vector<Bytes> outgoing(static_cast<std::size_t>(communicator_->size()));
   for (const Turn& turn : turns_)
-    if (turn.owner != communicator_->rank() && turn.moved > 0)
-      append(outgoing[static_cast<std::size_t>(turn.owner)], Count{turn.move.spot, turn.move.number, turn.moved});
+    if (turn.owner != communicator_->rank() && turn.shares > 0)
+      append(outgoing[static_cast<std::size_t>(turn.owner)],
+             Told<std::int64_t>{turn.move.spot, turn.move.number, turn.shares});
   for (const Bytes& bytes : communicator_->exchange(std::move(outgoing)))
     for (ByteReader reader(bytes); !reader.at_end();) {
-      const auto count = reader.take<Count>();
-      Move wanted;
-      wanted.spot = count.spot;
-      wanted.number = count.number;
-      std::lower_bound(turns_.begin(), turns_.end(), wanted, [](const Turn& turn, const Move& move) {
-        return in_order(turn.move, move);
-      })->moved += static_cast<int>(count.moved);
+      const auto told = reader.take<Told<std::int64_t>>();
+      turn_of(told.spot, told.number).shares += static_cast<int>(told.value);
+    }
+}
+
+/// From the rank that a spot belongs to, to all others whose grains its moves may reach.
+void WindowedDrainage::send_weights() {
+  if (communicator_->size() == 1) return;
+  const int own = communicator_->rank();
+  std::vector<Bytes> outgoing(static_cast<std::size_t>(communicator_->size()));
+  for (const Turn& turn : turns_) {
+    if (turn.owner != own) continue;
+    const auto [first, last] = packing_.reached(turn.move.middle.z(), parameters_.radius);
+    for (int rank = first; rank <= last; ++rank)
+      if (rank != own)
+        append(outgoing[static_cast<std::size_t>(rank)],
+               Told<double>{turn.move.spot, turn.move.number, turn.move.weight});
+  }
+  for (const Bytes& bytes : communicator_->exchange(std::move(outgoing)))
+    for (ByteReader reader(bytes); !reader.at_end();) {
+      const auto told = reader.take<Told<double>>();
+      turn_of(told.spot, told.number).move.weight = told.value;
     }
 }
 
 Counters WindowedDrainage::total() {
   const Counters& own = counters_;
-  const auto sums = communicator_->sum({own.moves, own.grains_moved, own.drained});
+  const auto sums = communicator_->sum({own.moves, own.shares_moved, own.drained});
   return {sums[0], sums[1], own.sweeps, own.grains_swept, sums[2]};
 }
 

@@ -16,7 +16,6 @@ Bytes WindowedDrainage::save() const {
   append(bytes, static_cast<std::uint64_t>(walkers_.size()));
   for (const Walker& walker : walkers_) {
     append(bytes, walker.spot);
-    append(bytes, walker.weight);
     append(bytes, walker.removed);
   }
   append(bytes, packing_.save());
@@ -37,13 +36,12 @@ std::vector<Bytes> WindowedDrainage::read(const std::vector<Bytes>& saved) {
     counters_.grains_swept = counters.grains_swept;
     if (communicator_->rank() == 0) {  // which goes on counting for all
       counters_.moves += counters.moves;
-      counters_.grains_moved += counters.grains_moved;
+      counters_.shares_moved += counters.shares_moved;
       counters_.drained += counters.drained;
     }
     for (auto spots = reader.take<std::uint64_t>(); spots > 0; --spots) {
       const Spot spot = take_spot(reader);
-      const auto weight = reader.take<double>();
-      walkers_.push_back({spot, weight, reader.take<bool>()});
+      walkers_.push_back({spot, reader.take<bool>()});
     }
     packings.push_back(reader.take_all<char>());
   }
@@ -68,7 +66,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       communicator_(std::move(communicator)),
       workers_(std::make_unique<Workers>(threads)),
       window_(positive_window(window)),
-      due_(moves_until_due(spots, relaxation.tolerance * diameter)),
+      due_(moves_until_due(spots, relaxation.tolerance, diameter)),
       packing_(diameter, extent, read(saved), *container_, communicator_),
       walk_(spots, *container_) {
   TiledPacking::require_radius(spots.radius, diameter);

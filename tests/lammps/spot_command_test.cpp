@@ -107,7 +107,7 @@ TEST(SpotCommand, AccuracyDecidesWhatIsLeftOpen) {
       {"fast", Accuracy::fast}, {"normal", Accuracy::normal}, {"exact", Accuracy::exact}};
   for (const auto& [word, accuracy] : words) {
     const SpotCommand c = resolved("accuracy " + word, 2.0);
-    const spot::RelaxationParameters chosen = SpotCommand::relaxation_of(accuracy);
+    const spot::RelaxationParameters chosen = SpotCommand::relaxation_of(accuracy, spot::InfluenceProfile::parabolic);
     EXPECT_EQ(*c.time_ordered, accuracy == Accuracy::exact) << word;
     EXPECT_EQ(c.relaxation.tolerance, chosen.tolerance) << word;
     EXPECT_EQ(c.relaxation.alpha, chosen.alpha) << word;
@@ -123,8 +123,15 @@ TEST(SpotCommand, AccuracyDecidesWhatIsLeftOpen) {
     EXPECT_EQ(given.relaxation.momentum, 0.1) << word;
     EXPECT_EQ(given.spots.step_height, 0.3) << word;
   }
-  EXPECT_LT(SpotCommand::relaxation_of(Accuracy::normal).tolerance,
-            SpotCommand::relaxation_of(Accuracy::fast).tolerance);
+  EXPECT_LT(resolved("accuracy normal").relaxation.tolerance, resolved("accuracy fast").relaxation.tolerance);
+}
+
+TEST(SpotCommand, RadiusAndMomentumGoWithTheProfile) {
+  EXPECT_EQ(parse(complete).spots.profile, spot::InfluenceProfile::parabolic);
+  const SpotCommand uniform = resolved("profile uniform", 2.0), parabolic = resolved("profile parabolic", 2.0);
+  EXPECT_EQ(uniform.spots.radius, 5.2);
+  EXPECT_NEAR(parabolic.spots.equivalent_radius(), 5.2, 0.002) << "the same volume";
+  EXPECT_LT(uniform.relaxation.momentum, parabolic.relaxation.momentum);
 }
 
 TEST(SpotCommand, SchedulesOf2006And2010GoWithTheirAlphaAndNoMomentum) {

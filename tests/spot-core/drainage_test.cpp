@@ -91,7 +91,7 @@ class PlainDrainage {
     int enclosed = 0;
     for (const Grain& grain : grains_)
       enclosed += !grain.held && squared(grain.position - move.middle) <= spots_.radius * spots_.radius;
-    return spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed);
+    return spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed * spot::whole_share);
   }
 
   bool relaxes_around(const Move& move) const {
@@ -310,7 +310,7 @@ void expect_identical(const Outcome& a, const Outcome& b) {
   scenes::expect_identical(a.left, b.left);
   scenes::expect_identical(a.drained, b.drained);
   EXPECT_EQ(a.counters.moves, b.counters.moves);
-  EXPECT_EQ(a.counters.grains_moved, b.counters.grains_moved);
+  EXPECT_EQ(a.counters.shares_moved, b.counters.shares_moved);
   EXPECT_EQ(a.counters.sweeps, b.counters.sweeps);
 }
 
@@ -462,7 +462,7 @@ TEST(DrainageUnit, CountersAddUp) {
   const spot::Counters& counters = drainage.counters();
   EXPECT_GT(counters.moves, 1000);
   EXPECT_LE(counters.sweeps, counters.moves / 5);
-  EXPECT_DOUBLE_EQ(counters.grains_per_move(), static_cast<double>(counters.grains_moved) / counters.moves);
+  EXPECT_DOUBLE_EQ(counters.grains_per_move(), static_cast<double>(counters.shares_moved) / spot::whole_share / static_cast<double>(counters.moves));
 }
 
 TEST(DrainageUnit, AnEmptyPackingWorks) {

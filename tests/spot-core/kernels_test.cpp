@@ -72,20 +72,27 @@ float depth_of(const Point& push) {
 
 constexpr double radius = 2.6 * diameter;
 
+constexpr auto radius_squared = static_cast<float>(radius * radius);
+constexpr spot::Reach uniform = {radius_squared, 1.0f}, parabolic = {radius_squared, 1.0f / radius_squared};
+
 TEST(KernelsInvariance, DisplacementIsTheSameInEveryBuild) {
   const Point by = {57012345, -8400321, 1003, 0};
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const auto start = points_in_box(400, 6.0, seed);
     const Point middle = point_at({3, 3, 3});
-    const auto squared = static_cast<float>(radius * radius);
+    const spot::Reach reach = seed % 2 == 0 ? uniform : parabolic;
+    const int shares = base.enclosed_shares(start.data(), start.size(), middle, reach);
+    EXPECT_GT(shares, 10 * spot::whole_share);
     auto plain = start;
-    const int moved = base.displace(plain.data(), plain.size(), middle, squared, by);
-    EXPECT_GT(moved, 20);
+    base.displace(plain.data(), plain.size(), middle, reach, by);
     for (const Kernels* build : spot::kernels::runnable()) {
       auto points = start;
-      EXPECT_EQ(build->displace(points.data(), points.size(), middle, squared, by), moved);
+      EXPECT_EQ(build->enclosed_shares(points.data(), points.size(), middle, reach), shares);
+      EXPECT_EQ(build->enclosed_shares(points.data(), 0, middle, reach), 0);
+      build->displace(points.data(), 0, middle, reach, by);
+      expect_same(points, start, *build);
+      build->displace(points.data(), points.size(), middle, reach, by);
       expect_same(points, plain, *build);
-      EXPECT_EQ(build->displace(points.data(), 0, middle, squared, by), 0);
     }
   }
 }
@@ -96,7 +103,7 @@ TEST(KernelsUnit, DisplacementMovesFreePointsInsideTheSphere) {
     const auto start = points_in_box(400, 6.0, seed);
     auto points = start;
     const Point middle = point_at({3, 3, 3});
-    base.displace(points.data(), points.size(), middle, static_cast<float>(radius * radius), {17, -5, 3, 0});
+    base.displace(points.data(), points.size(), middle, uniform, {17, -5, 3, 0});
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double part = squared_distance(start[i], middle) / (radius * radius);
       if (std::abs(part - 1.0) < 1e-6) continue;
@@ -108,6 +115,22 @@ TEST(KernelsUnit, DisplacementMovesFreePointsInsideTheSphere) {
   }
 }
 
+TEST(KernelsAnalytic, ParabolicSharesFallWithTheSquareOfTheDistance) {
+  const auto start = points_in_box(400, 6.0, 3);
+  auto points = start;
+  const Point middle = point_at({3, 3, 3});
+  base.displace(points.data(), points.size(), middle, parabolic, {0, 0, -1000000, 0});
+  double sum = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double part = squared_distance(start[i], middle) / (radius * radius);
+    const double share = start[i].state == Point::free ? std::max(0.0, 1.0 - part) : 0.0;
+    EXPECT_NEAR(static_cast<double>(points[i].z) - start[i].z, -1e6 * share, 1.5) << i;
+    sum += share;
+  }
+  EXPECT_NEAR(base.enclosed_shares(start.data(), start.size(), middle, parabolic), sum * spot::whole_share,
+              0.5 * sum + 200.0);
+}
+
 /// Neither empty places nor held grains are ever in reach, wherever they are and however small a diameter is.
 TEST(KernelsUnit, DisplacementLeavesHeldAndEmptyPlacesAlone) {
   const auto largest = static_cast<float>(8.0 * diameter * 8.0 * diameter);
@@ -115,7 +138,8 @@ TEST(KernelsUnit, DisplacementLeavesHeldAndEmptyPlacesAlone) {
     std::vector<Point> points(8, {0, 0, 0, Point::held});
     points[3] = points[6] = nobody;
     const auto before = points;
-    EXPECT_EQ(build->displace(points.data(), points.size(), {0, 0, 0, Point::free}, largest, {1, 1, 1, 0}), 0);
+    EXPECT_EQ(build->enclosed_shares(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}), 0);
+    build->displace(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}, {1, 1, 1, 0});
     expect_same(points, before, *build);
   }
 }
@@ -147,7 +171,9 @@ struct Listed {
 
   std::vector<Point> pushes(const Kernels& build, float share) const {
     std::vector<Point> all(grains.size());
-    build.push_off_neighbours(points.data(), grains.data(), grains.size(), lists(), {per_square, share}, all.data());
+    auto padded = grains;
+    padded.resize(grains.size() + spot::kernels::ahead, 0);
+    build.push_off_neighbours(points.data(), padded.data(), grains.size(), lists(), {per_square, share}, all.data());
     return all;
   }
 };
@@ -175,7 +201,7 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
     return both;
   }();
   const std::vector<std::uint8_t> sizes = {1, 1};
-  const std::vector<std::uint32_t> grains = {0, 1};
+  const std::vector<std::uint32_t> grains = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0};  // and those fetched ahead
   for (int k = 0; k < 1000; ++k) {
     const double overlap = 0.05 * draws.uniform(0.0, 1.0);
     spot::Vector3 along = draws.in_box({-1, -1, -1}, {1, 1, 1});
@@ -199,7 +225,8 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
 struct Correcting {
   std::vector<Point> points, last, pushes;
   std::vector<std::uint32_t> grains;
-  spot::kernels::Corrections at_most;
+  std::vector<std::uint8_t> in_cell;
+  std::vector<spot::Corrections> at_most;
 
   Correcting(std::uint64_t seed, std::size_t n) : points(points_in_box(3 * n, 4.0, seed)), last(3 * n, {0, 0, 0, 0}) {
     scenes::Draws draws(seed);
@@ -211,10 +238,16 @@ struct Correcting {
       pushes.push_back({whole(1e6), whole(1e6), whole(1e6), 0});
       std::memcpy(&pushes[i].state, &depth, sizeof depth);
     }
+    for (std::size_t left = n; left > 0; left -= in_cell.back())
+      in_cell.push_back(static_cast<std::uint8_t>(std::min<std::size_t>(left, 1 + in_cell.size() % 5)));
+    in_cell.push_back(0);
+    grains.resize(n + spot::kernels::ahead, 0);
+    at_most.resize(in_cell.size());
   }
 
   void run(const Kernels& build) {
-    at_most = build.correct(points.data(), last.data(), grains.data(), grains.size(), pushes.data(), 0.6f);
+    build.correct(points.data(), last.data(), grains.data(), in_cell.data(), in_cell.size(), pushes.data(), 0.6f,
+                  at_most.data());
   }
 };
 
@@ -222,8 +255,9 @@ TEST(KernelsAnalytic, CorrectionsAreThePushAndAPartOfTheLast) {
   const Correcting before(1, 7);
   Correcting after = before;
   after.run(base);
+  std::size_t cell = 0, left = before.in_cell[0];
   double longest = 0.0, deepest = 0.0;
-  for (std::size_t i = 0; i < before.grains.size(); ++i) {
+  for (std::size_t i = 0; i < before.pushes.size(); ++i) {
     const std::uint32_t grain = before.grains[i];
     const auto expected = [](std::int32_t push, std::int32_t last) {
       return push + static_cast<std::int32_t>(0.6f * static_cast<float>(last));
@@ -237,9 +271,14 @@ TEST(KernelsAnalytic, CorrectionsAreThePushAndAPartOfTheLast) {
     longest = std::max(longest, squared_distance(by, {0, 0, 0, 0}));
     deepest = std::max<double>(deepest, depth_of(before.pushes[i]));
     expect_same({after.points[grain - 1]}, {before.points[grain - 1]}, base);
+    if (--left > 0) continue;
+    EXPECT_NEAR(after.at_most[cell].longest_squared, longest, 1e-6 * longest);
+    EXPECT_EQ(after.at_most[cell].depth, deepest);
+    left = before.in_cell[++cell];
+    longest = deepest = 0.0;
   }
-  EXPECT_NEAR(after.at_most.longest_squared, longest, 1e-6 * longest);
-  EXPECT_EQ(after.at_most.depth, deepest);
+  EXPECT_EQ(cell + 1, before.in_cell.size());
+  EXPECT_EQ(after.at_most[cell].longest_squared, 0.0f) << "nobody is in the last cell";
 }
 
 TEST(KernelsInvariance, CorrectionsAreTheSameInEveryBuild) {
@@ -251,8 +290,10 @@ TEST(KernelsInvariance, CorrectionsAreTheSameInEveryBuild) {
       other.run(*build);
       expect_same(other.points, plain.points, *build);
       expect_same(other.last, plain.last, *build);
-      EXPECT_EQ(other.at_most.longest_squared, plain.at_most.longest_squared) << build->instruction_set;
-      EXPECT_EQ(other.at_most.depth, plain.at_most.depth) << build->instruction_set;
+      for (std::size_t cell = 0; cell < plain.in_cell.size(); ++cell) {
+        EXPECT_EQ(other.at_most[cell].longest_squared, plain.at_most[cell].longest_squared) << build->instruction_set;
+        EXPECT_EQ(other.at_most[cell].depth, plain.at_most[cell].depth) << build->instruction_set;
+      }
     }
   }
 }

@@ -34,19 +34,21 @@ class PlainPacking {
       bodies_.push_back({grain.id, grain.held, quanta(grain.position - low_), {0, 0, 0}});
   }
 
-  int displace(const spot::Move& move, double radius, double influence) {
-    const auto within = static_cast<float>((radius / quantum_.length()) * (radius / quantum_.length()));
-    const Place middle = quanta(move.middle - low_), by = quanta(-influence * move.weight * move.step);
-    int moved = 0;
+  /// Of all grains in a move, in parts.
+  int shares(const spot::Move& move, const spot::SpotParameters& spots) const {
+    int sum = 0;
+    for (const Body& body : bodies_)
+      sum += static_cast<int>(share(body, move, spots) * static_cast<float>(spot::whole_share));
+    return sum;
+  }
+
+  void displace(const spot::Move& move, const spot::SpotParameters& spots) {
+    const Place by = quanta(-spots.influence * move.weight * move.step);
     for (Body& body : bodies_) {
-      if (body.held) continue;
-      const float x = difference(body.at[0], middle[0]), y = difference(body.at[1], middle[1]),
-                  z = difference(body.at[2], middle[2]);
-      if (!((x * x + y * y) + z * z <= within)) continue;
-      for (std::size_t axis = 0; axis < 3; ++axis) body.at[axis] += by[axis];
-      ++moved;
+      const float part = share(body, move, spots);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        body.at[axis] += static_cast<std::int64_t>(part * static_cast<float>(by[axis]));
     }
-    return moved;
   }
 
   /// Over all grains.
@@ -87,6 +89,19 @@ class PlainPacking {
     bool held;
     Place at, last;
   };
+
+  /// Of a grain, in a move.
+  float share(const Body& body, const spot::Move& move, const spot::SpotParameters& spots) const {
+    if (body.held) return 0.0f;
+    const double radius_squared = (spots.radius / quantum_.length()) * (spots.radius / quantum_.length());
+    const bool uniform = spots.profile == spot::InfluenceProfile::uniform;
+    const float per_square = uniform ? 1.0f : static_cast<float>(1.0 / radius_squared);
+    const Place middle = quanta(move.middle - low_);
+    const float x = difference(body.at[0], middle[0]), y = difference(body.at[1], middle[1]),
+                z = difference(body.at[2], middle[2]);
+    const float part = (static_cast<float>(radius_squared) - ((x * x + y * y) + z * z)) * per_square;
+    return std::min(std::max(part, 0.0f), 1.0f);
+  }
 
   Place quanta(const spot::Vector3& length) const {
     const spot::Vector3 q = length / quantum_.length();

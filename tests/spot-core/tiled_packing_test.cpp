@@ -23,9 +23,11 @@ using spot::Overlap;
 using spot::PlaneWall;
 using spot::RelaxationParameters;
 using spot::RelaxationStrength;
+using spot::SpotParameters;
 using spot::TiledPacking;
 using spot::Vector3;
 using spot::WalledContainer;
+using spot::whole_share;
 using spot::Workers;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -46,12 +48,22 @@ double deepest_of(const std::vector<Grain>& grains, double diameter) {
   return 1.0 - std::sqrt(least) / diameter;
 }
 
+/// Carries out moves with the weights that they have; the shares that they enclosed.
+std::vector<int> carry_out(TiledPacking& packing, std::vector<Move> moves, const SpotParameters& spots,
+                           const spot::Container& container, Workers& workers) {
+  std::vector<int> enclosed;
+  packing.displace(
+      moves, spots, [&](const std::vector<int>& shares, std::vector<Move>&) { enclosed = shares; }, container, workers);
+  return enclosed;
+}
+
 /// What is done to a packing. Lengths in diameters; the numbers of the default are for a box of 11 x 7 x 8 centres.
 struct Treatment {
   std::string name;
   std::function<std::shared_ptr<const spot::Container>()> container = [] { return scenes::small_silo(6.0, 4.0); };
   std::vector<Grain> grains = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 8.0}, 0.01, 7);
   RelaxationParameters relaxation = {};
+  spot::InfluenceProfile profile = spot::InfluenceProfile::uniform;
   Vector3 low{-4, -3, 0}, high{4, 3, 7};  // where moves are
   double largest_step = 0.05;             // of a grain along an axis
   bool one_way = false;                   // along x
@@ -76,6 +88,13 @@ Treatment plain_box() { return {"Box"}; }
 Treatment of_2006() {
   Treatment t{"Of2006"};
   t.relaxation = relaxation_with(0.8, 0.0, RelaxationStrength::full_each);
+  return t;
+}
+
+Treatment parabolic() {
+  Treatment t{"Parabolic"};
+  t.profile = spot::InfluenceProfile::parabolic;
+  t.threads = 2;
   return t;
 }
 
@@ -224,8 +243,9 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
   TiledPacking tiled(t.diameter, t.extent, t.outlet, t.grains, *container);
   PlainPacking plain(t.diameter, t.extent, t.outlet, t.grains, *container);
   Workers workers(t.threads);
-  constexpr double influence = 5e-3;
-  const double step = t.largest_step / influence;
+  SpotParameters spots{2.6 * t.diameter, 5e-3};
+  spots.profile = t.profile;
+  const double step = t.largest_step / spots.influence;
   scenes::Draws draws(3);
   std::vector<int> moved;
   int total = 0;
@@ -237,12 +257,13 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
       if (t.one_way) move.step.x() = (call % 2 == 0 ? 1.0 : -1.0) * std::abs(move.step.x());
       move.weight = draws.uniform(0.0, 1.0);
     }
-    tiled.displace(moves, 2.6 * t.diameter, influence, *container, workers, moved);
+    moved = carry_out(tiled, moves, spots, *container, workers);
     ASSERT_EQ(moved.size(), moves.size());
     for (std::size_t m = 0; m < moves.size(); ++m) {
-      ASSERT_EQ(moved[m], plain.displace(moves[m], 2.6 * t.diameter, influence)) << "call " << call;
-      total += moved[m];
+      ASSERT_EQ(moved[m], plain.shares(moves[m], spots)) << "call " << call;
+      total += moved[m] / whole_share;
     }
+    for (const Move& move : moves) plain.displace(move, spots);
     for (int sweep = call % 3; sweep > 0; --sweep) {
       std::size_t free = 0;
       for (const Grain& grain : t.grains) free += grain.held ? 0 : 1;
@@ -262,7 +283,7 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Treatments, TiledPackingBruteForce,
-                         testing::Values(plain_box(), of_2006(), with_momentum(), with_held_grains(), coincident(),
+                         testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_held_grains(), coincident(),
                                          large_steps(), many_moves(), tall(), far_from_the_origin(), in_metres(),
                                          in_a_cylinder(), in_a_funnel()),
                          [](const auto& treatment) { return treatment.param.name; });
@@ -289,7 +310,7 @@ TEST(TiledPackingBruteForce, ASweepOfSomeCellsIsPartOfASweepOfAll) {
       move.middle = draws.in_box({-4, -3, 0}, {4, 3, 19});
       move.step = draws.in_box({-7, -7, -7}, {7, 7, 7});
     }
-    tiled.displace(moves, 2.6, 5e-3, *silo, workers, moved);
+    moved = carry_out(tiled, moves, {2.6, 5e-3}, *silo, workers);
     const auto before = sorted_grains(tiled);
     PlainPacking plain(1.0, 100.0, -1.0, before, *silo);
     plain.sweep(relaxation);
@@ -333,7 +354,7 @@ TEST(TiledPackingInvariance, ThreadsChangeNothing) {
         move.middle = draws.in_box({-4, -3, 0}, {4, 3, 19});
         move.step = draws.in_box({-7, -7, 0}, {7, 7, 7});
       }
-      packing.displace(moves, 2.6, 5e-3, *silo, workers, moved);
+      moved = carry_out(packing, moves, {2.6, 5e-3}, *silo, workers);
       for (const int n : moved) counts.back().push_back(static_cast<std::size_t>(n));
       counts.back().push_back(packing.sweep(relaxation_with(1.2, 0.7), 2, 0.02, *silo, workers));
       packing.take_out_below(0.48, out.back());
@@ -373,8 +394,9 @@ TEST(TiledPackingBruteForce, ACellThatOverflowsInFlowIsMadeLarger) {
     const double turn = 2.4 * k;
     const Vector3 out(std::cos(turn) * std::cos(k), std::sin(turn) * std::cos(k), std::sin(k));
     const auto moves = one_move(Vector3(3, 3, 3) + 2.0 * out, 60.0 * out);
-    tiled.displace(moves, 2.0, 5e-3, *space, workers, moved);
-    ASSERT_EQ(moved[0], plain.displace(moves[0], 2.0, 5e-3));
+    moved = carry_out(tiled, moves, {2.0, 5e-3}, *space, workers);
+    ASSERT_EQ(moved[0], plain.shares(moves[0], {2.0, 5e-3}));
+    plain.displace(moves[0], {2.0, 5e-3});
     tiled.sweep(relaxation, 0, 1.0, *space, workers);
     plain.sweep(relaxation);
   }
@@ -389,8 +411,8 @@ TEST(TiledPackingUnit, SweepsOnlyCellsThatAreDue) {
   std::vector<int> moved;
   const RelaxationParameters relaxation;
   EXPECT_EQ(packing.sweep(relaxation, 1, 1.0, *silo, workers), 0u) << "nobody has moved";
-  packing.displace(one_move({0, 0, 5}, {0.7, 0, 0.1}), 2.6, 2.5e-3, *silo, workers, moved);
-  EXPECT_GT(moved[0], 70);
+  moved = carry_out(packing, one_move({0, 0, 5}, {0.7, 0, 0.1}), {2.6, 2.5e-3}, *silo, workers);
+  EXPECT_GT(moved[0], 70 * whole_share);
   EXPECT_EQ(packing.sweep(relaxation, 2, 1.0, *silo, workers), 0u);
   const std::size_t swept = packing.sweep(relaxation, 1, 1.0, *silo, workers);
   EXPECT_GT(swept, 80u);
@@ -405,7 +427,7 @@ TEST(TiledPackingUnit, ASweepPaysForAsManyMovesAsMakeItDue) {
   std::vector<int> moved;
   for (const int due : {1, 2, 3, 7}) {
     // Of 14 moves one after the other, some paid for together.
-    for (int k = 0; k < 14; ++k) packing.displace(one_move({0, 0, 5}, {0.7, 0, 0.1}), 2.6, 1e-5, *silo, workers, moved);
+    for (int k = 0; k < 14; ++k) moved = carry_out(packing, one_move({0, 0, 5}, {0.7, 0, 0.1}), {2.6, 1e-5}, *silo, workers);
     std::size_t swept = 0;
     for (int sweep = 0; sweep < 14 / due; ++sweep) {
       const std::size_t now = packing.sweep({}, due, 1.0, *silo, workers);
@@ -428,7 +450,7 @@ TEST(TiledPackingUnit, DeepOverlapsKeepACellDue) {
   TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {2, {1.9, 1, 1}}}, *space);
   Workers workers(1);
   std::vector<int> moved;
-  packing.displace(one_move({1, 1, 1}, {0, 0, 0}), 2.6, 2.5e-3, *space, workers, moved);
+  moved = carry_out(packing, one_move({1, 1, 1}, {0, 0, 0}), {2.6, 2.5e-3}, *space, workers);
   const RelaxationParameters relaxation;
   EXPECT_EQ(packing.sweep(relaxation, 1, 0.02, *space, workers), 2u);
   EXPECT_EQ(packing.sweep(relaxation, 1, 0.02, *space, workers), 2u) << "0.02 d were left";
@@ -440,8 +462,8 @@ TEST(TiledPackingUnit, HeldGrainsStay) {
   TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}, true}, {2, {1.9, 1, 1}}}, *space);
   Workers workers(1);
   std::vector<int> moved;
-  packing.displace(one_move({1, 1, 1}, {1, 0, 0}), 2.6, 2.5e-3, *space, workers, moved);
-  EXPECT_EQ(moved, std::vector<int>{1});
+  moved = carry_out(packing, one_move({1, 1, 1}, {1, 0, 0}), {2.6, 2.5e-3}, *space, workers);
+  EXPECT_EQ(moved, std::vector<int>{whole_share});
   EXPECT_EQ(packing.sweep({}, 1, 0.02, *space, workers), 1u);
   const auto grains = sorted_grains(packing);
   EXPECT_EQ(grains[0].position, Vector3(1, 1, 1));
@@ -522,7 +544,7 @@ TEST(TiledPackingUnit, TakesOutWhatIsBelowTheOutlet) {
   std::vector<Grain> out;
   packing.take_out_below(0.0, out);
   EXPECT_TRUE(out.empty());
-  packing.displace(one_move({1, 1, 0}, {0, 0, 0.1}), 2.6, 0.05, *space, workers, moved);
+  moved = carry_out(packing, one_move({1, 1, 0}, {0, 0, 0.1}), {2.6, 0.05}, *space, workers);
   packing.take_out_below(0.0, out);
   ASSERT_EQ(out.size(), 1u) << "held grains stay";
   EXPECT_EQ(out[0].id, 1);
@@ -537,11 +559,11 @@ TEST(TiledPackingUnit, SpotsThatAreTooWideAreNamed) {
   std::vector<int> moved;
   TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}}, *space);
   EXPECT_THAT(scenes::text_of<InvalidParameter>([&] {
-                packing.displace(one_move({1, 1, 1}, {1, 0, 0}), 8.0, 2.5e-3, *space, workers, moved);
+                moved = carry_out(packing, one_move({1, 1, 1}, {1, 0, 0}), {8.0, 2.5e-3}, *space, workers);
               }),
               AllOf(HasSubstr("spot radius is 8 "), HasSubstr("below 8")));
-  packing.displace(one_move({8.9, 1, 1}, {1, 0, 0}), 7.99, 2.5e-3, *space, workers, moved);
-  EXPECT_EQ(moved[0], 1);
+  moved = carry_out(packing, one_move({8.9, 1, 1}, {1, 0, 0}), {7.99, 2.5e-3}, *space, workers);
+  EXPECT_EQ(moved[0], whole_share);
 }
 
 TEST(TiledPackingUnit, NoMovesNoGrainsNoError) {
@@ -549,9 +571,9 @@ TEST(TiledPackingUnit, NoMovesNoGrainsNoError) {
   Workers workers(2);
   std::vector<int> moved = {5};
   TiledPacking packing(1.0, 100.0, 0.0, {}, *space);
-  packing.displace({}, 2.6, 2.5e-3, *space, workers, moved);
+  moved = carry_out(packing, {}, {2.6, 2.5e-3}, *space, workers);
   EXPECT_TRUE(moved.empty());
-  packing.displace(one_move({8.9, 1, 1}, {1, 0, 0}), 2.6, 2.5e-3, *space, workers, moved);
+  moved = carry_out(packing, one_move({8.9, 1, 1}, {1, 0, 0}), {2.6, 2.5e-3}, *space, workers);
   EXPECT_EQ(moved, std::vector<int>{0});
   EXPECT_EQ(packing.sweep({}, 1, 0.02, *space, workers), 0u);
 }

@@ -6,6 +6,7 @@
 
 #include "spot/packing.hpp"
 #include "spot/parameters.hpp"
+#include "spot/point.hpp"
 
 namespace spot {
 
@@ -20,17 +21,25 @@ struct Move {
   double chance = 0.0;      ///< a uniform random number of this step, for whoever draws lots
 };
 
-/// The weight of a move whose spot, with its middle at `height` above the outlet, encloses so many grains, when spots
-/// carry a fixed volume: N part(height) / max(grains, 20), part(z) = 1/2 + 3 z / (4 R_s) - z^3 / (4 R_s^3) being the
-/// part of the spot above the outlet (2010, section 3.3). 1 if the parameters say that they don't.
-double fixed_volume_weight(const SpotParameters& parameters, double height, int grains);
+/// The part of a spot's volume that is above the outlet, z radii below its middle: 1/2 + 3 z / 4 - z^3 / 4 if it is
+/// uniform (2010, section 3.3), 1/2 + 15/16 (z - 2 z^3 / 3 + z^5 / 5) if it is parabolic.
+double part_above_outlet(InfluenceProfile profile, double z);
+
+/// The weight of a move whose spot, with its middle at `height` above the outlet, encloses grains with so many shares,
+/// when spots carry a fixed volume: N part / max(grains, 20), where `part` of the spot is above the outlet (2010,
+/// section 3.3). 1 if the parameters say that they don't.
+double fixed_volume_weight(const SpotParameters& parameters, double height, int shares);
 
 /// No weight is larger.
 double largest_weight(const SpotParameters& parameters);
 
-/// Moves every one of the given grains with its centre within `radius` of the move's middle by
-/// -weight * influence * step, rounded to the quantum (2006, eq. 1). Returns how many grains moved.
-int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move, double radius,
-             double influence);
+/// The shares that the given grains have in a move, together.
+int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
+                    const SpotParameters& spots);
+
+/// Moves every one of the given grains with its centre within R_s of the move's middle by its share of
+/// -weight * influence * step, rounded to the quantum (2006, eq. 1). Returns their shares together.
+int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
+             const SpotParameters& spots);
 
 }  // namespace spot

@@ -5,6 +5,12 @@
 
 namespace spot {
 
+/// How the influence of a move falls off with the distance r of a grain from its middle: the grain's share of it.
+enum class InfluenceProfile {
+  uniform,    ///< 1 up to R_s and nothing beyond (2006, 2010)
+  parabolic,  ///< 1 - r^2 / R_s^2: neighbours move by nearly the same, so that they overlap less
+};
+
 /// The five fitted numbers of the spot model and the seed.
 /// "2006" is Rycroft, Bazant, Grest, Landry, Phys. Rev. E 73, 051306; "2010" is Rycroft, Wong, Bazant,
 /// Powder Technology 200, 1-11. Lengths and times in the units of the deck.
@@ -15,9 +21,11 @@ struct SpotParameters {
   double step_height = 0.0;     ///< dz: and by dz upwards (length)
   double speed = 0.0;           ///< v_s: mean drift speed of a spot (length / time)
   double injection_rate = 0.0;  ///< nu_s: births per time (1 / time)
-  /// N: a spot always carries the free volume of w N grains, however many it encloses (2010's fixed-volume weighting).
+  /// N: a spot always carries the free volume of w N grains, however many it encloses, each counted by its share
+  /// (2010's fixed-volume weighting).
   /// 0: every grain it encloses moves by -w dr (2006).
   double fixed_volume = 0.0;
+  InfluenceProfile profile = InfluenceProfile::uniform;
   bool together = false;  ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
   std::uint64_t seed = 1;
 
@@ -28,6 +36,15 @@ struct SpotParameters {
   /// b_s = Var(x) / (2 z) of the walk. Half of the steps go along x, so Var(dx) = dx^2 / 2 a step and
   /// b_s = dx^2 / (4 dz) (length).
   double diffusion_length() const { return step_width * step_width / (4.0 * step_height); }
+  /// The share of a grain anywhere within R_s, on average.
+  double mean_share() const { return profile == InfluenceProfile::uniform ? 1.0 : 0.4; }
+  /// Of two grains in touch anywhere within R_s, the mean square of the difference of their shares: 1/4 if one of them
+  /// is as likely as not to be inside, or 4 d^2 <r^2> <cos^2> / R_s^4.
+  double mean_square_difference(double diameter) const {
+    return profile == InfluenceProfile::uniform ? 0.25 : 0.8 * (diameter / radius) * (diameter / radius);
+  }
+  /// Of the uniform spot with the same volume (length).
+  double equivalent_radius() const;
   /// V_s, the free volume that one spot carries through a packing of this packing fraction (length^3).
   double spot_volume(double packing_fraction) const;
 

@@ -18,6 +18,14 @@ struct alignas(16) Point {
   static constexpr std::int32_t free = 0, held = 1 << 29, empty = 1 << 30;
 };
 
+/// Shares of grains in moves are counted in so many parts, so that sums are exact.
+constexpr int whole_share = 1024;
+
+/// Whom a move reaches: the share of a free point is (radius^2 - r^2) per_square, but no more than 1.
+struct Reach {
+  float radius_squared, per_square;
+};
+
 /// Of the corrections in a cell: the square of the longest, and how deep the deepest overlap was (as in a push).
 struct Corrections {
   float longest_squared, depth;

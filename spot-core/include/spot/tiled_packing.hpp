@@ -78,13 +78,15 @@ class TiledPacking {
   /// Calls visit(grain) for all grains of this rank, in no particular order.
   void visit_grains(const std::function<void(const Grain&)>& visit) const;
 
-  /// Collective. Applies the moves, one after the other to every grain: as displace(), moves the grains within `radius`
-  /// of a move's middle. Each cell that a move may have reached is charged one move. Lists are up to date afterwards.
+  /// Gives moves their weights, when it is told the shares of this rank's grains in each of them.
+  using Weigh = std::function<void(const std::vector<int>& shares, std::vector<Move>& moves)>;
+
+  /// Collective. Applies the moves, one after the other to every grain, as displace() does. They are weighed before the
+  /// first one is applied. Each cell that a move may have reached is charged one move. Lists are up to date afterwards.
   /// `moves`: those that may reach grains of this rank, in the order of (spot, number) if there are several ranks.
-  /// `moved`: for each move, how many grains of this rank it moved. Throws InvalidParameter unless the radius is below
-  /// 8 diameters.
-  void displace(const std::vector<Move>& moves, double radius, double influence, const Container& container,
-                Workers& workers, std::vector<int>& moved);
+  /// Throws InvalidParameter unless the radius is below 8 diameters.
+  void displace(std::vector<Move>& moves, const SpotParameters& spots, const Weigh& weigh, const Container& container,
+                Workers& workers);
 
   /// Collective. One sweep over the cells that are due, those charged with `due` moves or more, which pays for `due` of
   /// them; a cell in which a grain was overlapped by more than `deepest` diameters stays due. Returns the number of
@@ -116,7 +118,7 @@ class TiledPacking {
   };
 
   /// What one worker has to do in a sweep.
-  struct Share {
+  struct Task {
     std::uint32_t first, last;          // of due_cells_
     std::uint32_t grains;               // in them
     std::vector<std::uint32_t> active;  // their slots, cell by cell, and kernels::ahead more
@@ -207,17 +209,18 @@ class TiledPacking {
   std::size_t first_row(std::size_t move) const { return move == 0 ? 0 : end_of_rows_[move - 1]; }
   double reach_of_move(double radius) const;
   std::size_t end_before_a_look(const std::vector<Move>& moves, std::size_t first, std::int32_t limit);
-  void apply_moves(std::size_t first, std::size_t last, float radius_squared, Workers& workers,
-                   std::vector<int>& moved);
+  void find_moves(const std::vector<Move>& moves, const SpotParameters& spots);
+  void find_shares(Workers& workers);
+  void apply_moves(std::size_t first, std::size_t last, Workers& workers);
 
   // Sweeps.
-  void collect(Share& share) const;
-  void push_apart(Share& share, const RelaxationParameters& parameters, const Container& container) const;
-  void part_coincident(Share& share, double push) const;
-  void push_off_planes(Share& share, float strength) const;
-  void push_off_other_walls(Share& share, double strength, const Container& container) const;
+  void collect(Task& task) const;
+  void push_apart(Task& task, const RelaxationParameters& parameters, const Container& container) const;
+  void part_coincident(Task& task, double push) const;
+  void push_off_planes(Task& task, float strength) const;
+  void push_off_other_walls(Task& task, double strength, const Container& container) const;
   void push(Point& point, const Vector3& by) const;
-  void apply(Share& share, int due, float deepest, float momentum);
+  void apply(Task& task, int due, float deepest, float momentum);
 
   /// Accounts are kept in sixteenths of a move, and a sweep can cost such parts.
   static constexpr std::int32_t parts_of_move = 16;
@@ -258,10 +261,11 @@ class TiledPacking {
   std::vector<Row> rows_, near_rows_;
   std::vector<std::size_t> end_of_rows_;  // in rows_, of each move
   std::vector<Point> middles_, steps_;
-  std::vector<std::vector<int>> moved_by_;  // of each worker
+  Reach reach_{};
+  std::vector<int> shares_;                  // of this rank's grains in each move
   std::vector<std::uint32_t> found_, wandered_cells_, due_cells_;
   bool look_ = false;  // must lists be brought up to date before the next move?
-  std::vector<Share> shares_;
+  std::vector<Task> tasks_;
 };
 
 }  // namespace spot

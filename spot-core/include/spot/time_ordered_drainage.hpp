@@ -40,7 +40,6 @@ class TimeOrderedDrainage : public Drainage {
   TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
                       std::shared_ptr<const Container> container, double diameter, double extent, ByteReader saved);
   void carry_out(Move move);
-  int enclosed(const Move& move) const;
   bool relaxes_around(const Move& move) const;
   /// As in 2006. The other schedules are there to see what comes of less, and may let the packing collapse.
   bool relaxes_every_move() const {

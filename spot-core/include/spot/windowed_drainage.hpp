@@ -14,15 +14,16 @@ namespace spot {
 /// The fast driver. Per window of time all spots walk and displace their blocks, in order of birth; then the cells in
 /// which that has used up the tolerance are relaxed, as often as it takes.
 ///
-/// How much a cell needs is kept in its account, the number of moves that reached into it: n of them, each enclosing
-/// one grain of a touching pair or the other with probability 1/4, add w^2 dx^2 n / 12 to the mean square overlap along
-/// the line of centres. A cell is due when that exceeds the tolerance squared, and a sweep pays for that many moves.
+/// How much a cell needs is kept in its account, the number of moves that reached into it: n of them add
+/// w^2 dx^2 n s / 3 to the mean square overlap along the line of centres, s being the mean square difference of the
+/// shares of two grains in touch. A cell is due when that exceeds the tolerance squared, and a sweep pays for that many
+/// moves.
 ///
-/// With a fixed volume, the weight of a spot's moves is the one that it had at the end of the window before.
+/// With a fixed volume, moves are weighed by what they enclose before the first move of their window.
 ///
 /// Several ranks can share the grains and the spots: a spot belongs to the rank whose layers it is in. Once in a window
-/// its moves go to all ranks whose grains they may reach, and the numbers of grains that moved come back. Constructors,
-/// advance_to(), replace_grains() and total() are collective then.
+/// its moves go to all ranks whose grains they may reach, the shares of these come back, and weights go out.
+/// Constructors, advance_to(), replace_grains() and total() are collective then.
 class WindowedDrainage : public Drainage {
  public:
   /// `window`: in the units of the rates. `grains`: of which each rank brings some. Throws as TimeOrderedDrainage does,
@@ -57,18 +58,17 @@ class WindowedDrainage : public Drainage {
   /// A spot that this rank moves.
   struct Walker {
     Spot spot;
-    double weight;  // of its moves
     bool removed;
   };
 
   /// A move that may reach grains of this rank, or that one of its spots has made.
   struct Turn {
     Move move;
-    int owner;  // rank to which the spot belongs after the window
-    int moved;  // grains, as far as is known
+    int owner;   // rank to which the spot belongs after the window
+    int shares;  // of the grains that it encloses, as far as is known
   };
 
-  static double moves_until_due(const SpotParameters& spots, double tolerance);
+  static double moves_until_due(const SpotParameters& spots, double tolerance, double diameter);
   static double positive_window(double window);
   /// Throws InvalidParameter if relaxation could not follow what spots do in a window.
   void require_fitting_window() const;
@@ -78,7 +78,10 @@ class WindowedDrainage : public Drainage {
   void share_turns();
   void hand_over(std::vector<Bytes>& outgoing);
   void displace();
-  void gather_counts();
+  void weigh(const std::vector<int>& shares, std::vector<Move>& moves);
+  void gather_shares();
+  void send_weights();
+  Turn& turn_of(std::int64_t spot, std::int64_t number);
   void settle();
   void relax();
   void drop_removed();
@@ -100,7 +103,6 @@ class WindowedDrainage : public Drainage {
   // Of the window at hand.
   std::vector<Turn> turns_;  // in the order of (spot, number)
   std::vector<Move> moves_;  // the same
-  std::vector<int> moved_;   // grains of this rank
 };
 
 }  // namespace spot
