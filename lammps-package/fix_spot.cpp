@@ -7,6 +7,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "memory.h"
 #include "modify.h"
 #include "region.h"
 #include "update.h"
@@ -35,6 +36,9 @@ namespace {
 
 /// Columns of the spots in dump local.
 enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
+
+/// Columns of the output per atom, after the displacement along x, y and z.
+enum GrainColumn { MOVES = 3, GRAIN_COLUMNS };
 
 /// Of all that a grain is, to the quantum: LAMMPS rounds positions when it balances its ranks.
 std::uint64_t hash_of(const spot::Grain &grain, const spot::Quantum &quantum) {
@@ -136,9 +140,15 @@ FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg)
   } catch (const spot::Error &e) {
     error->all(FLERR, message("Illegal fix spot command: ", e.what()));
   }
+  if (model->command.per_atom) offer_output_per_atom();
 }
 
-FixSpot::~FixSpot() = default;
+FixSpot::~FixSpot() {
+  if (!peratom_flag) return;
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
+  memory->destroy(array_atom);
+}
 
 int FixSpot::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | END_OF_STEP; }
 
@@ -320,7 +330,10 @@ void FixSpot::make_drainage() {
 void FixSpot::setup(int) {
   try {
     const bool goes_on = model->drainage || model->saved;
-    if (!model->drainage) make_drainage();
+    if (!model->drainage) {
+      make_drainage();
+      if (peratom_flag) model->drainage->count_moves_received();
+    }
     if (goes_on) {
       if (model->command.uses_region()) model->drainage->replace_container(model->container);
       if (!grains_are_as_they_were()) model->drainage->replace_grains(grains_of_lammps());
@@ -364,7 +377,11 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
   const auto put = [&](std::int64_t grain, const double *position) {
     const int i = local_index(grain);
     for (int axis = 0; axis < 3; ++axis) {
-      if (after_step) atom->v[i][axis] = (position[axis] - quantum.snap(atom->x[i][axis])) * per_time;
+      if (after_step) {
+        const double by = position[axis] - quantum.snap(atom->x[i][axis]);
+        atom->v[i][axis] = by * per_time;
+        if (peratom_flag) array_atom[i][axis] += by;
+      }
       atom->x[i][axis] = position[axis];
     }
   };
@@ -400,6 +417,7 @@ void FixSpot::initial_integrate(int) {
     drainage.advance_to(static_cast<double>(model->windows) * *model->command.window);
     drainage.require_inside();
     write_grains(drainage.take_drained(), true);
+    if (peratom_flag) add_moves_received();
   } catch (const spot::Error &e) {
     fail(e);
   }
@@ -533,6 +551,65 @@ void FixSpot::restart(char *bytes) {
   const auto &totals = model->saved->drained_after_step;
   model->drained_after_step.assign(totals.begin(), totals.end());
 }
+
+/* ----------------------------------------------------------------------
+   output per atom: what has become of each grain since the fix was made
+------------------------------------------------------------------------- */
+
+void FixSpot::offer_output_per_atom() {
+  peratom_flag = 1;
+  size_peratom_cols = GRAIN_COLUMNS;
+  peratom_freq = 1;
+  restart_peratom = 1;
+  create_attribute = 1;
+  grow_arrays(atom->nmax);
+  for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+}
+
+/// A grain may have been moved on several ranks in one step.
+void FixSpot::add_moves_received() {
+  const spot::MovesReceived received = model->drainage->take_moves_received();
+  std::vector<DeliveredMoves> deliveries;
+  for (const auto &[grain, moves] : received) deliveries.push_back({grain, moves});
+  if (comm->nprocs > 1) deliveries = deliver(deliveries, {atom->tag, atom->tag + atom->nlocal}, *model->ranks);
+  for (const DeliveredMoves &delivery : deliveries)
+    array_atom[local_index(delivery.id)][MOVES] += static_cast<double>(delivery.moves);
+}
+
+void FixSpot::grow_arrays(int atoms) { memory->grow(array_atom, atoms, GRAIN_COLUMNS, "fix_spot:array_atom"); }
+
+void FixSpot::copy_arrays(int from, int to, int) { std::copy_n(array_atom[from], +GRAIN_COLUMNS, array_atom[to]); }
+
+void FixSpot::set_arrays(int i) { std::fill_n(array_atom[i], +GRAIN_COLUMNS, 0.0); }
+
+int FixSpot::pack_exchange(int i, double *buffer) {
+  std::copy_n(array_atom[i], +GRAIN_COLUMNS, buffer);
+  return GRAIN_COLUMNS;
+}
+
+int FixSpot::unpack_exchange(int i, double *buffer) {
+  std::copy_n(buffer, +GRAIN_COLUMNS, array_atom[i]);
+  return GRAIN_COLUMNS;
+}
+
+/// In a restart file the values of each fix come after their number, which counts itself.
+int FixSpot::pack_restart(int i, double *buffer) {
+  buffer[0] = GRAIN_COLUMNS + 1;
+  return 1 + pack_exchange(i, buffer + 1);
+}
+
+void FixSpot::unpack_restart(int i, int nth) {
+  if (!peratom_flag) return;
+  double *values = atom->extra[i];
+  for (; nth > 0; --nth) values += static_cast<int>(*values);
+  unpack_exchange(i, values + 1);
+}
+
+int FixSpot::size_restart(int) { return GRAIN_COLUMNS + 1; }
+
+int FixSpot::maxsize_restart() { return GRAIN_COLUMNS + 1; }
 
 double FixSpot::memory_usage() {
   if (!model->drainage) return 0.0;

@@ -39,6 +39,17 @@ class FixSpot : public Fix {
   double compute_vector(int) override;
   double memory_usage() override;
 
+  // Of the output per atom, which goes along with the atoms.
+  void grow_arrays(int) override;
+  void copy_arrays(int, int, int) override;
+  void set_arrays(int) override;
+  int pack_exchange(int, double *) override;
+  int unpack_exchange(int, double *) override;
+  int pack_restart(int, double *) override;
+  void unpack_restart(int, int) override;
+  int size_restart(int) override;
+  int maxsize_restart() override;
+
  private:
   struct Model;  // what comes from spot-core stays out of this header
   std::unique_ptr<Model> model;
@@ -54,6 +65,8 @@ class FixSpot : public Fix {
   void check_box();
   std::vector<spot::Grain> grains_of_lammps() const;
   void write_grains(const std::vector<spot::Grain> &, bool);
+  void offer_output_per_atom();
+  void add_moves_received();
   void tell_all_who_leaves();
   int local_index(std::int64_t) const;
   void list_spots();

@@ -22,8 +22,9 @@ std::vector<Bytes> sort_by_rank(const std::vector<Record> &records, int ranks, c
 
 }  // namespace
 
-std::vector<Delivery> deliver(const std::vector<Delivery> &deliveries, const std::vector<std::int64_t> &held,
-                              spot::Communicator &communicator) {
+template <typename Parcel>
+std::vector<Parcel> deliver(const std::vector<Parcel> &parcels, const std::vector<std::int64_t> &held,
+                            spot::Communicator &communicator) {
   const int ranks = communicator.size();
   const auto meeting = [ranks](std::int64_t id) { return static_cast<int>(id % ranks); };
   std::unordered_map<std::int64_t, int> holder;
@@ -31,18 +32,23 @@ std::vector<Delivery> deliver(const std::vector<Delivery> &deliveries, const std
   for (int rank = 0; rank < ranks; ++rank)
     for (const std::int64_t id : ByteReader(claims[static_cast<std::size_t>(rank)]).take_all<std::int64_t>())
       holder[id] = rank;
-  std::vector<Delivery> in_transit;
-  for (const Bytes &bytes : communicator.exchange(
-           sort_by_rank(deliveries, ranks, [&](const Delivery &delivery) { return meeting(delivery.id); })))
-    for (const Delivery &delivery : ByteReader(bytes).take_all<Delivery>()) {
-      if (holder.count(delivery.id) == 0)
+  std::vector<Parcel> in_transit;
+  for (const Bytes &bytes :
+       communicator.exchange(sort_by_rank(parcels, ranks, [&](const Parcel &parcel) { return meeting(parcel.id); })))
+    for (const Parcel &parcel : ByteReader(bytes).take_all<Parcel>()) {
+      if (holder.count(parcel.id) == 0)
         throw spot::InvalidPacking(
-            spot::message("grain ", delivery.id, " was lost by LAMMPS: make the simulation box larger"));
-      in_transit.push_back(delivery);
+            spot::message("grain ", parcel.id, " was lost by LAMMPS: make the simulation box larger"));
+      in_transit.push_back(parcel);
     }
-  std::vector<Delivery> arrived;
+  std::vector<Parcel> arrived;
   for (const Bytes &bytes : communicator.exchange(
-           sort_by_rank(in_transit, ranks, [&](const Delivery &delivery) { return holder.at(delivery.id); })))
-    for (const Delivery &delivery : ByteReader(bytes).take_all<Delivery>()) arrived.push_back(delivery);
+           sort_by_rank(in_transit, ranks, [&](const Parcel &parcel) { return holder.at(parcel.id); })))
+    for (const Parcel &parcel : ByteReader(bytes).take_all<Parcel>()) arrived.push_back(parcel);
   return arrived;
 }
+
+template std::vector<Delivery> deliver(const std::vector<Delivery> &, const std::vector<std::int64_t> &,
+                                       spot::Communicator &);
+template std::vector<DeliveredMoves> deliver(const std::vector<DeliveredMoves> &, const std::vector<std::int64_t> &,
+                                             spot::Communicator &);

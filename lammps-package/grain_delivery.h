@@ -14,10 +14,16 @@ struct Delivery {
   bool left;  // drained; no position
 };
 
-/// Brings deliveries from the ranks that move the grains to those that hold them: each ID has a third rank, known to
-/// all, where both meet. Collective. `held`: IDs of the grains that this rank holds.
+/// Moves that a grain has received.
+struct DeliveredMoves {
+  std::int64_t id, moves;
+};
+
+/// Brings deliveries, of either kind, from the ranks that move the grains to those that hold them: each ID has a third
+/// rank, known to all, where both meet. Collective. `held`: IDs of the grains that this rank holds.
 /// Throws spot::InvalidPacking that names a grain which nobody holds.
-std::vector<Delivery> deliver(const std::vector<Delivery> &deliveries, const std::vector<std::int64_t> &held,
-                              spot::Communicator &communicator);
+template <typename Parcel>
+std::vector<Parcel> deliver(const std::vector<Parcel> &parcels, const std::vector<std::int64_t> &held,
+                            spot::Communicator &communicator);
 
 #endif

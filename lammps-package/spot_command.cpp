@@ -199,7 +199,10 @@ const std::map<std::string, Reader>& readers() {
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,
                      Words& w) { c.largest_overlap = w.positive("the largest overlap at the start, in diameters"); }},
-      {"average", [](SpotCommand& c, Words& w) { c.average = to_int(w.integer("steps for the mean outflow", 1)); }}};
+      {"average", [](SpotCommand& c, Words& w) { c.average = to_int(w.integer("steps for the mean outflow", 1)); }},
+      {"peratom", [](SpotCommand& c, Words& w) {
+         c.per_atom = one_of<bool>(w, "peratom", {{"no", false}, {"yes", true}});
+       }}};
   return all;
 }
 

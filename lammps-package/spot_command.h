@@ -50,6 +50,7 @@ struct SpotCommand {
   std::optional<double> window;
   double largest_overlap = 0.03;  // in diameters
   int average = 100;              // steps over which the outflow is averaged
+  bool per_atom = false;          // output of what has become of each grain
 
   SpotCommand() { spots.profile = spot::InfluenceProfile::parabolic; }
 
@@ -62,7 +63,8 @@ struct SpotCommand {
   static double step_height_in_diameters(Accuracy accuracy);
   static spot::RelaxationParameters relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile);
 
-  /// All that decides where grains and spots go, as text, once it is resolved. `threads` and `average` are not in it.
+  /// All that decides where grains and spots go, as text, once it is resolved. `threads`, `average` and `peratom` are
+  /// not in it.
   std::vector<std::pair<std::string, std::string>> settings() const;
 
   bool uses_region() const { return std::holds_alternative<RegionWalls>(walls); }

@@ -52,7 +52,7 @@ int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& gr
 }
 
 int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
-             const SpotParameters& spots) {
+             const SpotParameters& spots, MovesReceived* received) {
   const Quantum& quantum = packing.quantum();
   const Vector3 whole = -spots.influence * move.weight * move.step;
   int shares = 0;
@@ -62,6 +62,7 @@ int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const M
     const double share = share_at(spots, squared);
     const Vector3 by = share * whole;
     packing.move(i, quantum.round(by.x()), quantum.round(by.y()), quantum.round(by.z()));
+    if (received) ++(*received)[packing.id(i)];
     shares += parts_of(share);
   }
   return shares;

@@ -87,6 +87,12 @@ std::vector<Grain> Drainage::take_drained() {
   return drained;
 }
 
+MovesReceived Drainage::take_moves_received() {
+  MovesReceived received;
+  if (received_) received.swap(*received_);
+  return received;
+}
+
 /// Throws unless every grain is inside the walls or falling out of the orifice, above `lowest` and within `reach` of
 /// its axis.
 void Drainage::require_inside(double lowest, double reach) const {

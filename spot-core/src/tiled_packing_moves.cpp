@@ -41,7 +41,7 @@ double TiledPacking::reach_of_move(double radius) const {
 }
 
 void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spots, const Weigh& weigh,
-                            const Container& container, Workers& workers) {
+                            const Container& container, Workers& workers, MovesReceived* received) {
   require_radius(spots.radius, diameter_);
   const auto limit = static_cast<std::int32_t>((0.5 * skin_ + leeway_in_diameters * diameter_) / quantum_.length());
   find_moves(moves, spots);
@@ -52,7 +52,11 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
   for (std::size_t first = 0;;) {
     const std::size_t end = end_before_a_look(moves, first, limit);
     for (std::size_t m = first; m < end; ++m) charge(m);
-    apply_moves(first, end, workers);
+    if (received) received_.assign(points_.size(), 0);
+    apply_moves(first, end, workers, received != nullptr);
+    if (received)
+      for (std::size_t slot = 0; slot < received_.size(); ++slot)
+        if (received_[slot] > 0) (*received)[ids_[slot]] += received_[slot];
     update_lists(container);
     first = end;
     if (!look_) return;
@@ -123,18 +127,30 @@ void TiledPacking::charge(std::size_t move) {
       account_[cell] = std::min(account_[cell] + parts_of_move, deepest_in_debt);
 }
 
-void TiledPacking::apply_moves(std::size_t first, std::size_t last, Workers& workers) {
+void TiledPacking::apply_moves(std::size_t first, std::size_t last, Workers& workers, bool count) {
   // A worker owns some layers of the grid, and applies all moves in them, in order.
   const auto n = static_cast<std::uint32_t>(workers.size());
   workers.run([&](int worker) {
+    std::vector<std::uint32_t> found;
     for (std::size_t m = first; m < last; ++m)
       for (std::size_t r = first_row(m); r < end_of_rows_[m]; ++r) {
         const Row& row = rows_[r];
         if (n > 1 && row.first / cells_in_layer() % n != static_cast<std::uint32_t>(worker)) continue;
+        if (count) count_received(row, middles_[m], found);
         kernels_->displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middles_[m],
                            reach_, steps_[m]);
       }
   });
+}
+
+/// Counts a move for the grains that it is about to move.
+void TiledPacking::count_received(const Row& row, const Point& middle, std::vector<std::uint32_t>& found) {
+  const std::uint32_t first = row.first * capacity_, n = (row.last - row.first) * capacity_;
+  if (found.size() < n) found.resize(n);
+  const std::size_t within =
+      kernels_->find_within(points_.data() + first, n, middle, reach_.radius_squared, first, found.data());
+  for (std::size_t k = 0; k < within; ++k)
+    if (points_[found[k]].state == Point::free) ++received_[found[k]];
 }
 
 }  // namespace spot

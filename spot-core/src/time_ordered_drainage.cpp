@@ -71,7 +71,7 @@ void TimeOrderedDrainage::carry_out(Move move) {
   if (parameters_.fixed_volume > 0.0)
     move.weight = fixed_volume_weight(parameters_, move.middle.z() - limits_.outlet,
                                       enclosed_shares(packing_, near_, move, parameters_));
-  const int shares = displace(packing_, near_, move, parameters_);
+  const int shares = displace(packing_, near_, move, parameters_, received());
   ++counters_.moves;
   counters_.shares_moved += shares;
   if (shares == 0) {

@@ -135,7 +135,8 @@ void WindowedDrainage::displace() {
   moves_.clear();
   for (const Turn& turn : turns_) moves_.push_back(turn.move);
   packing_.displace(
-      moves_, parameters_, [this](const auto& shares, auto& moves) { weigh(shares, moves); }, container(), *workers_);
+      moves_, parameters_, [this](const auto& shares, auto& moves) { weigh(shares, moves); }, container(), *workers_,
+      received());
 }
 
 /// `shares`: of this rank's grains.

@@ -44,7 +44,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   const SpotCommand c = parse(
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
-      "accuracy fast momentum 0.3 volume 77.5 steps together threads 4");
+      "accuracy fast momentum 0.3 volume 77.5 steps together threads 4 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -71,6 +71,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.spots.fixed_volume, 77.5);
   EXPECT_TRUE(c.spots.together);
   EXPECT_EQ(c.threads, 4);
+  EXPECT_TRUE(c.per_atom);
 }
 
 /// What a command means once the diameter is known.
@@ -202,6 +203,8 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
               AllOf(HasSubstr("'steps alone' is not known"), HasSubstr("'poisson' or 'together'")));
   EXPECT_THAT(error_of(complete + "strength 0.5"),
               AllOf(HasSubstr("'strength 0.5' is not known"), HasSubstr("'full' or 'half'")));
+  EXPECT_THAT(error_of(complete + "peratom on"),
+              AllOf(HasSubstr("'peratom on' is not known"), HasSubstr("'no' or 'yes'")));
   EXPECT_THAT(error_of(complete + "relax often"),
               AllOf(HasSubstr("'relax often' is not known"), HasSubstr("'relax tol delta'"), HasSubstr("'relax never'"),
                     HasSubstr("'every', 'chance', 'spot' and 'global'")));
@@ -249,7 +252,8 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "exact",     "momentum", "volume",
                                                "steps",     "poisson",  "together",
                                                "threads",   "tol",      "chance",
-                                               "spot",      "global",   "silo"};
+                                               "spot",      "global",   "silo",
+                                               "peratom",   "yes",      "no"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -366,7 +370,8 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"strength", c.relaxation.strength == spot::RelaxationStrength::half_each ? "half" : "full"},
       {"shell", in(c.relaxation.shell, "")},
       {"overlap", in(c.largest_overlap, "")},
-      {"average", std::to_string(c.average)}};
+      {"average", std::to_string(c.average)},
+      {"peratom", c.per_atom ? "yes" : "no"}};
   std::map<std::string, std::string> documented;
   const std::string text = section("Default", ".. _Rycroft2006:");
   for (const auto& match : matches(text, "\n\\* (\\w+) = ([^\n]*)")) documented[match[1]] = match[2];

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <ostream>
 #include <set>
@@ -451,6 +452,32 @@ TEST(DrainageUnit, SpotsAreRemovedAboveThePacking) {
   for (const spot::Spot& spot : drainage.spots()) EXPECT_LT(spot.position.z(), top + 2.6 + 0.1);
   // Born at nu_s, alive while they climb from R_s below the orifice to R_s above the packing.
   EXPECT_LT(static_cast<double>(drainage.spots().size()), 363.0 * (top + 2.0 * 2.6) / 3.2 * 1.2);
+}
+
+TEST(DrainageUnit, MovesThatGrainsReceiveAreCounted) {
+  RelaxationParameters never;
+  never.every = 0;
+  std::vector<Grain> grains = filling(8.0);
+  grains[100].held = true;
+  TimeOrderedDrainage drainage = drainage_of(grains, strong_spots(), never);
+  drainage.advance_to(0.5);
+  EXPECT_TRUE(drainage.take_moves_received().empty()) << "nobody has asked for it";
+  const std::vector<Grain> before = drainage.grains();
+  const std::int64_t moved_before = drainage.counters().grains_moved;
+  drainage.count_moves_received();
+  drainage.advance_to(2.0);
+  spot::MovesReceived received = drainage.take_moves_received();
+  std::int64_t moved = 0;
+  for (const auto& [id, moves] : received) moved += moves;
+  EXPECT_EQ(moved, drainage.counters().grains_moved - moved_before);
+  EXPECT_GT(drainage.counters().drained, 0);
+  // Without relaxation every move takes a grain down by as much.
+  const double down = drainage.quantum().round(strong_spots().influence * strong_spots().step_height);
+  std::map<std::int64_t, double> start;
+  for (const Grain& grain : before) start[grain.id] = grain.position.z();
+  for (const Grain& grain : drainage.grains())
+    EXPECT_EQ(start[grain.id] - grain.position.z(), down * static_cast<double>(received[grain.id])) << grain.id;
+  EXPECT_TRUE(drainage.take_moves_received().empty()) << "taken already";
 }
 
 TEST(DrainageUnit, CountersAddUp) {

@@ -45,11 +45,14 @@ class PlainPacking {
   void displace(const spot::Move& move, const spot::SpotParameters& spots) {
     const Place by = quanta(-spots.influence * move.weight * move.step);
     for (Body& body : bodies_) {
+      if (within(body, move, spots)) ++received[body.id];
       const float part = share(body, move, spots);
       for (std::size_t axis = 0; axis < 3; ++axis)
         body.at[axis] += static_cast<std::int64_t>(part * static_cast<float>(by[axis]));
     }
   }
+
+  spot::MovesReceived received;
 
   /// Over all grains.
   void sweep(const spot::RelaxationParameters& parameters) {
@@ -90,16 +93,25 @@ class PlainPacking {
     Place at, last;
   };
 
+  float squared_distance(const Body& body, const spot::Move& move) const {
+    const Place middle = quanta(move.middle - low_);
+    const float x = difference(body.at[0], middle[0]), y = difference(body.at[1], middle[1]),
+                z = difference(body.at[2], middle[2]);
+    return (x * x + y * y) + z * z;
+  }
+
+  bool within(const Body& body, const spot::Move& move, const spot::SpotParameters& spots) const {
+    const double radius = spots.radius / quantum_.length();
+    return !body.held && squared_distance(body, move) <= static_cast<float>(radius * radius);
+  }
+
   /// Of a grain, in a move.
   float share(const Body& body, const spot::Move& move, const spot::SpotParameters& spots) const {
     if (body.held) return 0.0f;
     const double radius_squared = (spots.radius / quantum_.length()) * (spots.radius / quantum_.length());
     const bool uniform = spots.profile == spot::InfluenceProfile::uniform;
     const float per_square = uniform ? 1.0f : static_cast<float>(1.0 / radius_squared);
-    const Place middle = quanta(move.middle - low_);
-    const float x = difference(body.at[0], middle[0]), y = difference(body.at[1], middle[1]),
-                z = difference(body.at[2], middle[2]);
-    const float part = (static_cast<float>(radius_squared) - ((x * x + y * y) + z * z)) * per_square;
+    const float part = (static_cast<float>(radius_squared) - squared_distance(body, move)) * per_square;
     return std::min(std::max(part, 0.0f), 1.0f);
   }
 

@@ -55,6 +55,7 @@ struct Scene {
 struct Outcome {
   std::map<std::int64_t, Grain> grains, drained;
   std::map<std::int64_t, Spot> spots;
+  std::map<std::int64_t, std::int64_t> received;  // moves
   Counters counters;
   std::vector<Bytes> saved;
   std::vector<std::size_t> grains_of_rank;
@@ -63,6 +64,7 @@ struct Outcome {
 void expect_same(const Outcome& a, const Outcome& b) {
   EXPECT_EQ(a.grains, b.grains);
   EXPECT_EQ(a.drained, b.drained);
+  EXPECT_EQ(a.received, b.received);
   ASSERT_EQ(a.spots.size(), b.spots.size());
   for (const auto& [id, spot] : a.spots) {
     ASSERT_TRUE(b.spots.count(id)) << id;
@@ -88,6 +90,7 @@ Outcome drain(const Scene& scene, int ranks, double time, const StartOfRank& sta
   scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
     const auto rank = static_cast<std::size_t>(communicator->rank());
     const auto drainage = scene.drainage(start_of_rank(static_cast<int>(rank)), communicator);
+    drainage->count_moves_received();
     drainage->advance_to(time);
     const Counters counters = drainage->total();
     const std::lock_guard<std::mutex> lock(mutex);
@@ -97,6 +100,7 @@ Outcome drain(const Scene& scene, int ranks, double time, const StartOfRank& sta
     });
     for (const Grain& grain : drainage->take_drained()) outcome.drained.emplace(grain.id, grain);
     for (const Spot& spot : drainage->spots()) EXPECT_TRUE(outcome.spots.emplace(spot.id, spot).second);
+    for (const auto& [id, moves] : drainage->take_moves_received()) outcome.received[id] += moves;
     outcome.counters = counters;
     outcome.saved[rank] = drainage->save();
   });
@@ -142,6 +146,7 @@ TEST_P(RanksInvariance, GoOnFromAStateThatOthersHaveSaved) {
     const Outcome half = drain(scene, before, 2.0);
     Outcome rest = drain(scene, GetParam(), 4.0, [&](int) { return half.saved; });
     rest.drained.insert(half.drained.begin(), half.drained.end());
+    for (const auto& [id, moves] : half.received) rest.received[id] += moves;
     expect_same(rest, whole);
   }
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -87,6 +88,13 @@ class Drainage {
   /// Grains that left since the last call, where they were then, in increasing order of ids.
   std::vector<Grain> take_drained();
 
+  /// Counts from now on how many moves move each grain, which is not free.
+  void count_moves_received() { received_.emplace(); }
+
+  /// What was counted since the last call, on this rank. A grain that came from another rank has been counted there,
+  /// too; grains that have drained meanwhile are among them.
+  MovesReceived take_moves_received();
+
  protected:
   /// Throws InvalidParameter or InvalidContainer if spots, limits and container do not fit together.
   Drainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
@@ -109,6 +117,7 @@ class Drainage {
   }
 
   const Container& container() const { return *container_; }
+  MovesReceived* received() { return received_ ? &*received_ : nullptr; }
 
   /// Largest overlap that may stand after a relaxation, in diameters.
   double overlap_allowed() const { return std::max(limits_.largest_overlap, limits_.largest_overlap_in_flow); }
@@ -126,6 +135,7 @@ class Drainage {
   double diameter_;
   Counters counters_;
   std::vector<Grain> drained_;
+  std::optional<MovesReceived> received_;  // if they are counted
 
  private:
   void require_inside(double lowest, double reach) const;

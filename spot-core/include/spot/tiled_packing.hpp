@@ -84,9 +84,9 @@ class TiledPacking {
   /// Collective. Applies the moves, one after the other to every grain, as displace() does. They are weighed before the
   /// first one is applied. Each cell that a move may have reached is charged one move. Lists are up to date afterwards.
   /// `moves`: those that may reach grains of this rank, in the order of (spot, number) if there are several ranks.
-  /// Throws InvalidParameter unless the radius is below 8 diameters.
+  /// `received`, if there is one: counts the moves of each grain. Throws InvalidParameter unless the radius is below 8 diameters.
   void displace(std::vector<Move>& moves, const SpotParameters& spots, const Weigh& weigh, const Container& container,
-                Workers& workers);
+                Workers& workers, MovesReceived* received = nullptr);
 
   /// Collective. One sweep over the cells that are due, those charged with `due` moves or more, which pays for `due` of
   /// them; a cell in which a grain was overlapped by more than `deepest` diameters stays due. Returns the number of
@@ -211,7 +211,8 @@ class TiledPacking {
   std::size_t end_before_a_look(const std::vector<Move>& moves, std::size_t first, std::int32_t limit);
   void find_moves(const std::vector<Move>& moves, const SpotParameters& spots);
   void find_shares(Workers& workers);
-  void apply_moves(std::size_t first, std::size_t last, Workers& workers);
+  void apply_moves(std::size_t first, std::size_t last, Workers& workers, bool count);
+  void count_received(const Row& row, const Point& middle, std::vector<std::uint32_t>& found);
 
   // Sweeps.
   void collect(Task& task) const;
@@ -263,6 +264,7 @@ class TiledPacking {
   std::vector<Point> middles_, steps_;
   Reach reach_{};
   std::vector<int> shares_;                  // of this rank's grains in each move
+  std::vector<std::uint32_t> received_;      // moves of the grain in each slot, where they are counted
   std::vector<std::uint32_t> found_, wandered_cells_, due_cells_;
   bool look_ = false;  // must lists be brought up to date before the next move?
   std::vector<Task> tasks_;
