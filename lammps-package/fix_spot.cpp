@@ -18,6 +18,7 @@
 #include "region_container.h"
 #include "saved_run.h"
 #include "spot/errors.hpp"
+#include "spot/memory.hpp"
 #include "spot/time_ordered_drainage.hpp"
 #include "spot/windowed_drainage.hpp"
 #include "spot_command.h"
@@ -80,6 +81,11 @@ class LocalIndices {
     }
     const auto found = map_.find(tag);
     return found == map_.end() ? -1 : found->second;
+  }
+
+  std::size_t memory() const {
+    constexpr std::size_t node = sizeof(void *) + sizeof(std::pair<const tagint, int>);
+    return spot::bytes_in(table_) + map_.size() * node + map_.bucket_count() * sizeof(void *);
   }
 
  private:
@@ -612,6 +618,10 @@ int FixSpot::size_restart(int) { return GRAIN_COLUMNS + 1; }
 int FixSpot::maxsize_restart() { return GRAIN_COLUMNS + 1; }
 
 double FixSpot::memory_usage() {
-  if (!model->drainage) return 0.0;
-  return static_cast<double>(model->drainage->memory()) + static_cast<double>(model->spots.capacity() * sizeof(double));
+  const Model &m = *model;
+  std::size_t bytes = m.local.memory() + spot::bytes_in(m.leaving, m.spots, m.rows);
+  bytes += m.drained_after_step.size() * sizeof m.drained_after_step[0];
+  if (m.drainage) bytes += m.drainage->memory();
+  if (peratom_flag) bytes += atom->nmax * (GRAIN_COLUMNS * sizeof(double) + sizeof(double *));
+  return static_cast<double>(bytes);
 }

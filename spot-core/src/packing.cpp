@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "spot/errors.hpp"
+#include "spot/memory.hpp"
 
 namespace spot {
 
@@ -207,9 +208,9 @@ Overlap Packing::largest_overlap(const std::vector<std::uint32_t>& grains) const
 }
 
 std::size_t Packing::memory() const {
-  return ids_.capacity() * (sizeof(std::int64_t) + 6 * sizeof(double) + 2 * sizeof(char) + sizeof(std::uint32_t) +
-                            sizeof(std::uint16_t)) +
-         sizeof(std::uint32_t) * (neighbours_.capacity() + wandered_.capacity()) + grid_.memory();
+  return bytes_in(ids_, x_, y_, z_, reference_x_, reference_y_, reference_z_, held_, near_wall_, cell_, neighbours_,
+                  list_size_, wandered_) +
+         grid_.memory();
 }
 
 }  // namespace spot

@@ -8,6 +8,7 @@
 #include "kernel_builds.hpp"
 #include "packed.hpp"
 #include "spot/errors.hpp"
+#include "spot/memory.hpp"
 #include "wrapped_integers.hpp"
 
 namespace spot {
@@ -365,8 +366,12 @@ Overlap TiledPacking::largest_overlap() const {
 }
 
 std::size_t TiledPacking::memory() const {
-  return points_.capacity() * (3 * sizeof(Point) + sizeof(std::int64_t) + 3) +
-         lists_.capacity() * sizeof(std::uint32_t) + account_.capacity() * 2 * sizeof(std::int32_t);
+  std::size_t bytes = bytes_in(points_, references_, momenta_, ids_, near_wall_, cell_near_wall_, lists_, list_size_,
+                               marks_, account_, path_, rows_, near_rows_, end_of_rows_, middles_, steps_, received_,
+                               found_, wandered_cells_, due_cells_);
+  for (const std::vector<int>& moved : moved_by_) bytes += bytes_in(moved);
+  for (const Share& share : shares_) bytes += bytes_in(share.active, share.in_cell, share.walled, share.pushes);
+  return bytes;
 }
 
 }  // namespace spot

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "spot/errors.hpp"
+#include "spot/memory.hpp"
 
 namespace spot {
 
@@ -177,6 +178,10 @@ std::vector<Spot> WindowedDrainage::spots() const {
   for (const Walker& walker : walkers_)
     if (!walker.removed) live.push_back(walker.spot);
   return live;
+}
+
+std::size_t WindowedDrainage::memory() const {
+  return packing_.memory() + bytes_in(walkers_, turns_, moves_, moved_);
 }
 
 void WindowedDrainage::relax() {

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the fix says: grains that leave, velocities, the global vector, the spots."""
 
+import re
+
 import numpy as np
 import pytest
 
-from lammps_runs import (FIX, HALF_DEPTH, HALF_WIDTH, deck, lattice, positions, programs, read_dump, run_ok, thermo, write_data)
+from lammps_runs import (FIX, HALF_DEPTH, HALF_WIDTH, LOAD_SPOT, ROOT, deck, lattice, positions, programs, read_dump, run_ok, thermo,
+                         write_data)
 
 # f_drain[1] to f_drain[7]
 SPOTS, MOVES, DRAINED, MASS, OUTFLOW, OVERLAP, SWEEPS = (f"f_drain[{k}]" for k in range(1, 8))
@@ -161,3 +164,31 @@ def test_values_between_runs(tmp_path):
                          run='run 20\nregion silo delete\nprint "overlap $(f_drain[6]:%.15g)"'), tmp_path)
     said = [float(line.split()[1]) for line in screen.splitlines() if line.startswith("overlap")]
     assert said == [pytest.approx(thermo(screen)[OVERLAP][-1])]
+
+
+def megabytes(folder, fix):
+    """What the program holds after a step of the silo of 2006, and what LAMMPS says that it is."""
+    screen = run_ok(f"""
+units lj
+atom_style sphere
+boundary f f f
+include {LOAD_SPOT}
+read_data {ROOT}/examples/silo/packing.data.gz
+{fix}
+timestep 1e-3
+run 1
+info memory
+""", folder)
+    held = re.search(r"Total dynamically allocated memory: ([\d.]+) Mbyte", screen)
+    said = re.search(r"Per MPI rank memory allocation \(min/avg/max\) = ([\d.]+)", screen)
+    return float(held[1]), float(said[1])
+
+
+@pytest.mark.parametrize("words", ["", "peratom yes", "accuracy exact"])
+def test_memory_usage(tmp_path, words):
+    """To 10 per cent, and LAMMPS counts all that it holds itself."""
+    silo = "box -0.075 0.075 -0.012 0.012 orifice 0 0 0 0.012 speed 0.549 injection 22185"
+    without = megabytes(tmp_path, "fix nothing all nve/sphere")
+    held, said = (a - b for a, b in zip(megabytes(tmp_path, f"fix drain all spot {silo} {words}"), without))
+    assert held > 5
+    assert said == pytest.approx(held, rel=0.1)

@@ -67,7 +67,7 @@ class Drainage {
   virtual std::vector<Spot> spots() const = 0;
   virtual Overlap largest_overlap() = 0;
 
-  /// Bytes held by the packing.
+  /// Bytes that packing and spots take on this rank, with all that is kept from one move or window to the next.
   virtual std::size_t memory() const = 0;
 
   /// All that is needed to go on from here with the same bits, walls and parameters apart: the part of this rank.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "spot/memory.hpp"
 #include "spot/packing.hpp"
 #include "spot/parameters.hpp"
 
@@ -24,6 +25,8 @@ class Relaxation {
   /// The packing's lists must be up to date; no grain may occur twice. Returns the largest overlap of two grains that
   /// it found, in diameters.
   double sweep(Packing& packing, const Container& container, const std::vector<std::uint32_t>& movable);
+
+  std::size_t memory() const { return bytes_in(is_movable_, pushes_); }
 
  private:
   struct Push {

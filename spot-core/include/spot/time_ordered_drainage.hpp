@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "spot/drainage.hpp"
+#include "spot/memory.hpp"
 #include "spot/packing.hpp"
 #include "spot/relaxation.hpp"
 #include "spot/spot_population.hpp"
@@ -32,7 +33,9 @@ class TimeOrderedDrainage : public Drainage {
   const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override { return population_.spots(); }
   Overlap largest_overlap() override;
-  std::size_t memory() const override { return packing_.memory(); }
+  std::size_t memory() const override {
+    return packing_.memory() + relaxation_.memory() + bytes_in(population_.spots(), near_);
+  }
 
   const Packing& packing() const { return packing_; }
 

@@ -48,7 +48,7 @@ class WindowedDrainage : public Drainage {
   const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override;
   Overlap largest_overlap() override { return packing_.largest_overlap(); }
-  std::size_t memory() const override { return packing_.memory(); }
+  std::size_t memory() const override;
   Counters total() override;
 
   /// Moves into a cell after which it is relaxed.
