@@ -156,6 +156,16 @@ FixSpot::~FixSpot() {
   memory->destroy(array_atom);
 }
 
+int FixSpot::modify_param(int narg, char **arg) {
+  try {
+    const std::size_t read = modify_spot_command(model->command, {arg, arg + narg});
+    if (model->drainage) model->drainage->set_threads(model->command.threads);
+    return static_cast<int>(read);
+  } catch (const spot::Error &e) {
+    error->all(FLERR, message("Illegal fix_modify command for fix spot: ", e.what()));
+  }
+}
+
 int FixSpot::setmask() { return INITIAL_INTEGRATE | PRE_EXCHANGE | END_OF_STEP; }
 
 /* ----------------------------------------------------------------------

@@ -29,6 +29,7 @@ class FixSpot : public Fix {
 
   int setmask() override;
   void init() override;
+  int modify_param(int, char **) override;
   void setup(int) override;
   void initial_integrate(int) override;
   void pre_exchange() override;

@@ -21,6 +21,7 @@ class Words {
   explicit Words(const std::vector<std::string>& words) : words_(words) {}
 
   bool empty() const { return next_ == words_.size(); }
+  std::size_t taken() const { return next_; }
 
   std::string keyword() {
     keyword_ = words_[next_++];
@@ -233,6 +234,15 @@ SpotCommand parse_spot_command(const std::vector<std::string>& list) {
   require(command.spots.injection_rate > 0.0, "injection",
           "spots born per time; outflow / (influence * grains a spot)");
   return command;
+}
+
+std::size_t modify_spot_command(SpotCommand& command, const std::vector<std::string>& list) {
+  Words words(list);
+  const std::string keyword = words.keyword();
+  if (keyword != "threads")
+    throw InvalidParameter(message("unknown keyword '", keyword, "'; only 'threads' can be changed"));
+  readers().at(keyword)(command, words);
+  return words.taken();
 }
 
 double SpotCommand::radius_in_diameters(spot::InfluenceProfile profile) {

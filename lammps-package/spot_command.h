@@ -74,4 +74,8 @@ struct SpotCommand {
 /// what is allowed. Knows no LAMMPS, so that it can be tested by itself.
 SpotCommand parse_spot_command(const std::vector<std::string>& words);
 
+/// Reads one keyword and its values from the words after `fix_modify ID`; returns how many words that were. Throws
+/// spot::InvalidParameter unless it is one that may change between runs.
+std::size_t modify_spot_command(SpotCommand& command, const std::vector<std::string>& words);
+
 #endif

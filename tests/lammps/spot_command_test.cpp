@@ -40,6 +40,12 @@ std::string error_of(const std::string& text) {
   return {};
 }
 
+std::set<std::string> known_keywords() {
+  const std::string error = error_of("?");
+  const auto words = words_of(error.substr(error.find("known are:") + 10));
+  return {words.begin(), words.end()};
+}
+
 TEST(SpotCommand, ReadsEveryKeyword) {
   const SpotCommand c = parse(
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
@@ -233,6 +239,27 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   EXPECT_THROW(resolved("momentum 1").relaxation.validate(), InvalidParameter);
 }
 
+TEST(SpotCommand, OnlyThreadsMayBeModified) {
+  SpotCommand command = parse(complete);
+  EXPECT_EQ(modify_spot_command(command, words_of("threads 3 energy yes")), 2U);
+  EXPECT_EQ(command.threads, 3);
+  const auto error = [&](const std::string& words) {
+    try {
+      modify_spot_command(command, words_of(words));
+    } catch (const InvalidParameter& refused) {
+      return std::string(refused.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(error("threads"), HasSubstr("'threads' ends before its value"));
+  EXPECT_THAT(error("threads 0"), HasSubstr("1 or more"));
+  for (const std::string& keyword : known_keywords()) {
+    if (keyword == "threads") continue;
+    EXPECT_THAT(error(keyword + " 1"), HasSubstr("unknown keyword '" + keyword + "'; only 'threads'"));
+  }
+  EXPECT_EQ(command.threads, 3);
+}
+
 /// Random commands: either they are read, and then what was read is in range, or the error is InvalidParameter.
 TEST(SpotCommand, RandomWordsGiveNoOtherError) {
   const std::vector<std::string> vocabulary = {"box",       "cylinder", "region",
@@ -306,12 +333,6 @@ std::vector<std::vector<std::string>> matches(const std::string& text, const std
   for (std::sregex_iterator match(text.begin(), text.end(), regex), end; match != end; ++match)
     all.emplace_back(match->begin(), match->end());
   return all;
-}
-
-std::set<std::string> known_keywords() {
-  const std::string error = error_of("?");
-  const auto words = words_of(error.substr(error.find("known are:") + 10));
-  return {words.begin(), words.end()};
 }
 
 TEST(SpotDocumentation, ListsTheKeywords) {

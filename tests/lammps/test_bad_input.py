@@ -234,3 +234,22 @@ def test_plugin_of_another_name_and_relative_path(tmp_path):
 
 def test_option_that_lmp_does_not_know(tmp_path):
     has(error_of(deck(), tmp_path, launcher=[FRONT_END, "-nonsense"]), "Invalid command-line argument")
+
+
+@pytest.mark.parametrize("words, said", [
+    ("threads 0", ["for fix spot: '0' after keyword 'threads'", "1 or more"]),
+    ("threads", ["'threads' ends before its value"]),
+    ("seed 2", ["unknown keyword 'seed'; only 'threads' can be changed"]),
+    ("bodyforces late", ["unknown keyword 'bodyforces'"]),
+    ("threads 2 speed 3", ["unknown keyword 'speed'"]),
+    ("energy yes", ["Illegal fix_modify command"]),
+    ("virial yes", ["Illegal fix_modify command"]),
+    ("respa 1", ["Illegal fix_modify command"]),
+    ("", ["Illegal fix_modify command"])])
+def test_fix_modify(tmp_path, words, said):
+    has(error_of(deck(fix(), after=f"fix_modify drain {words}"), tmp_path), *said)
+
+
+def test_fix_modify_threads_beyond_the_most(tmp_path):
+    for when in ({"after": "fix_modify drain threads 257"}, {"run": "run 1\nfix_modify drain threads 257\nrun 1"}):
+        has(error_of(deck(fix(), **when), tmp_path), "number of threads is 257 ", "from 1 to 256")

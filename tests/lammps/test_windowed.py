@@ -52,6 +52,11 @@ def test_run_in_pieces(reference, tmp_path):
     assert drain(tmp_path, fix=WINDOWED, run="run 7\nrun 3\nrun 13 pre no\nrun 7") == reference
 
 
+def test_fix_modify_changes_no_bit(reference, tmp_path):
+    modified = "fix_modify drain threads 3\nrun 13\nfix_modify drain threads 2 dynamic/dof yes\nfix_modify drain energy no virial no\nrun 10"
+    assert drain(tmp_path, fix=WINDOWED, run=f"run 7\n{modified}") == reference
+
+
 def test_run_in_pieces_with_region(tmp_path):
     one = drain(tmp_path / "one", before=REGION, fix=IN_REGION)
     assert drain(tmp_path / "pieces", before=REGION, fix=IN_REGION, run=30 * "run 1\n") == one

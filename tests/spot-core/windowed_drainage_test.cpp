@@ -228,6 +228,18 @@ class OneAtATime : public spot::Container {
   std::thread::id owner_ = std::this_thread::get_id();
 };
 
+TEST(WindowedDrainageInvariance, ThreadsMayComeAndGo) {
+  WindowedDrainage one = drainage_of(filling(8.0)), other = drainage_of(filling(8.0));
+  one.advance_to(2.0);
+  for (const int threads : {3, 1, 2}) {
+    other.advance_to(threads == 3 ? 0.5 : 1.0);
+    other.set_threads(threads);
+  }
+  EXPECT_THROW(other.set_threads(0), InvalidParameter);
+  other.advance_to(2.0);
+  scenes::expect_identical(one.grains(), other.grains());
+}
+
 TEST(WindowedDrainageInvariance, ThreadsChangeNothingWithWallsThatAreAskedOneAtATime) {
   std::vector<std::vector<Grain>> left;
   for (const int threads : {1, 3}) {

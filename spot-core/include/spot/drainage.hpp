@@ -58,6 +58,9 @@ class Drainage {
   /// Goes on with other walls; grains that are outside them are found by require_inside().
   virtual void replace_container(std::shared_ptr<const Container> container) = 0;
 
+  /// Goes on with another number of threads, where the driver has any. Throws InvalidParameter as Workers does.
+  virtual void set_threads(int) {}
+
   /// Calls visit(grain) for all grains, in no particular order.
   virtual void visit_grains(const std::function<void(const Grain&)>& visit) const = 0;
 

@@ -44,6 +44,7 @@ class WindowedDrainage : public Drainage {
   void advance_to(double time) override;
   void replace_grains(const std::vector<Grain>& grains) override;
   void replace_container(std::shared_ptr<const Container> container) override;
+  void set_threads(int threads) override { workers_ = std::make_unique<Workers>(threads); }
   void visit_grains(const std::function<void(const Grain&)>& visit) const override { packing_.visit_grains(visit); }
   const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override;
