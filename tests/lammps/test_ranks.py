@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The number of MPI ranks, and how LAMMPS shares its box among them, change no bit of the dump."""
 
+import re
+
 import numpy as np
 import pytest
 
-from lammps_runs import DISTRIBUTION, FIX, deck, drain, lattice, needs_distribution, needs_mpirun, on_ranks, run_ok, thermo, write_data
+from lammps_runs import (DISTRIBUTION, FIX, deck, drain, error_of, lattice, needs_distribution, needs_mpirun, on_ranks, run, run_ok,
+                         thermo, write_data)
 
 pytestmark = needs_mpirun
 
@@ -85,3 +88,26 @@ def test_thermo(tmp_path):
     assert one["f_drain[3]"][-1] > 10
     for column, values in one.items():
         assert four[column] == pytest.approx(values, rel=1e-12 if column == "f_drain[4]" else 0, abs=0), column
+
+
+def highest():
+    """ID of a grain at the top."""
+    return int(np.argmax(lattice()[:, 2])) + 1
+
+
+# Where nobody relaxes, grains are driven through the base; or somebody pushes one into another.
+COLLAPSES = {"first": (0, "window 0.01", "run 100", "left through the base"),
+             "last": (2, "window 0.001", f"run 1\ngroup top id {highest()}\ndisplace_atoms top move 0 0 -0.6\nrun 10", "overlap by")}
+
+
+@pytest.mark.parametrize("where", COLLAPSES)
+def test_collapse_on_one_rank_ends_all(tmp_path, where):
+    """With the error that a single rank gives."""
+    rank, window, runs, said = COLLAPSES[where]
+    text = deck(fix=f"{FIX} relax tol 1 {window}", run=runs)
+    alone = error_of(text, tmp_path)
+    assert said in alone and "grain" in alone and "relax more" in alone
+    done = run(text, tmp_path, launcher=on_ranks(3))
+    assert done.returncode != 0
+    errors = re.findall(r"^ERROR on proc (\d): (.*) \(", done.stdout + done.stderr, flags=re.MULTILINE)
+    assert errors == [(str(rank), alone[:alone.rindex(" (")])]
