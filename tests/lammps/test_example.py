@@ -3,20 +3,21 @@
 
 import json
 import os
+import re
 import subprocess
 
 import numpy as np
 import pytest
 import zstandard
 
-from lammps_runs import DISTRIBUTION, FRONT_END, PLUGIN, ROOT, needs_distribution
+from lammps_runs import DISTRIBUTION, FRONT_END, PLUGIN, ROOT, needs_distribution, needs_mpirun, on_ranks, thermo
 
 SILO = ROOT / "examples" / "silo"
 
 
-def run_example(program, out, **variables):
+def run_example(program, out, launcher=(), log="none", **variables):
     """Snapshots of the deck as bytes, by step."""
-    command = [program, "-in", "in.silo_spot", "-log", "none", "-var", "out", str(out)]
+    command = [*launcher, program, "-in", "in.silo_spot", "-log", str(log), "-var", "out", str(out)]
     for name, value in variables.items():
         command += ["-var", name, str(value)]
     done = subprocess.run(command, cwd=SILO, env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=600)
@@ -68,3 +69,23 @@ def test_seed(snapshots, tmp_path):
 
 def test_threads(snapshots, tmp_path):
     assert run_example(FRONT_END, tmp_path / "out", time=0.035, threads=3) == snapshots[1]
+
+
+def thermo_but_times(log):
+    return {name: list(values) for name, values in thermo(log).items() if not name.startswith("CPU")}
+
+
+@pytest.mark.parametrize("ranks", [1, pytest.param(4, marks=needs_mpirun)])
+def test_stored_log(tmp_path, ranks):
+    """The same numbers, on as many ranks; how the logs were made is in examples/silo/README.md."""
+    (stored,) = SILO.glob(f"log.*.silo_spot.g++.{ranks}")
+    expected = thermo_but_times(stored.read_text())
+    assert len(expected) == 7 and len(expected["Step"]) == 3
+    out, log = tmp_path / "out", tmp_path / "log"
+    run_example(FRONT_END, out, launcher=on_ranks(ranks) if ranks > 1 else (), log=log, time=0.06)
+    assert thermo_but_times(log.read_text()) == expected
+
+
+def test_stored_logs_name_no_place_of_the_machine():
+    for stored in SILO.glob("log.*"):
+        assert not re.search(r"[ '\"]/\w+/|/(home|root|tmp|usr)/|\w@\w", stored.read_text()), stored.name
