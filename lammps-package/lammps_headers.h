@@ -2,12 +2,13 @@
 #ifndef SPOT_LAMMPS_HEADERS_H
 #define SPOT_LAMMPS_HEADERS_H
 
-// To be included before any header of LAMMPS that a distribution installed.
+// To be included before any header of LAMMPS. In a source tree of LAMMPS it does nothing.
 //
-// Those headers ask for <fmt/...> but bring none, and use a function that fmt 9 no longer has. It is declared
-// here only to make templates parse that are never instantiated: LAMMPS exports its own, older fmt, so every
-// message goes to it as a finished std::string.
+// Headers that a distribution installed ask for <fmt/...> but bring none, and use a function that fmt 9 no longer has.
+// It is declared here only to make templates parse that are never instantiated: LAMMPS exports its own, older fmt, so
+// every message goes to it as a finished std::string.
 
+#ifdef SPOT_INSTALLED_LAMMPS
 #include <fmt/format.h>
 
 #if FMT_VERSION >= 90000
@@ -15,6 +16,7 @@ namespace fmt {
 template <typename... Args>
 format_args make_args_checked(...);
 }
+#endif
 #endif
 
 #endif
