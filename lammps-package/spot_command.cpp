@@ -249,7 +249,7 @@ double SpotCommand::radius_in_diameters(spot::InfluenceProfile profile) {
   return profile == spot::InfluenceProfile::uniform ? 2.6 : 3.53;
 }
 
-double SpotCommand::step_height_in_diameters(Accuracy accuracy) { return accuracy == Accuracy::exact ? 0.1 : 0.8; }
+double SpotCommand::step_height_in_diameters(Accuracy accuracy) { return accuracy == Accuracy::exact ? 0.1 : 1.2; }
 
 spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile) {
   // Chosen from the curves of benchmarks/time_vs_error.py. More momentum and a larger alpha are cheaper for the same
@@ -257,7 +257,7 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::I
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 5e-3 : 2.9e-3;
+  relaxation.tolerance = fast ? 5e-3 : 3e-3;
   relaxation.alpha = fast ? 1.2 : 0.8;
   relaxation.momentum = profile == spot::InfluenceProfile::parabolic ? 0.8 : fast ? 0.7 : 0.6;
   return relaxation;

@@ -367,10 +367,10 @@ Overlap TiledPacking::largest_overlap() const {
 
 std::size_t TiledPacking::memory() const {
   std::size_t bytes = bytes_in(points_, references_, momenta_, ids_, near_wall_, cell_near_wall_, lists_, list_size_,
-                               marks_, account_, path_, rows_, near_rows_, end_of_rows_, middles_, steps_, received_,
-                               found_, wandered_cells_, due_cells_);
-  for (const std::vector<int>& moved : moved_by_) bytes += bytes_in(moved);
-  for (const Share& share : shares_) bytes += bytes_in(share.active, share.in_cell, share.walled, share.pushes);
+                               marks_, account_, path_, rows_, near_rows_, end_of_rows_, middles_, steps_, shares_,
+                               received_, found_, wandered_cells_, due_cells_);
+  for (const Task& task : tasks_)
+    bytes += bytes_in(task.active, task.in_cell, task.walled, task.pushes, task.corrections);
   return bytes;
 }
 

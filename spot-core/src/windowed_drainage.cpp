@@ -181,7 +181,7 @@ std::vector<Spot> WindowedDrainage::spots() const {
 }
 
 std::size_t WindowedDrainage::memory() const {
-  return packing_.memory() + bytes_in(walkers_, turns_, moves_, moved_);
+  return packing_.memory() + bytes_in(walkers_, turns_, moves_);
 }
 
 void WindowedDrainage::relax() {

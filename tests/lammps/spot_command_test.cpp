@@ -377,6 +377,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
   c.resolve(d);
   const std::map<std::string, std::string> defaults = {
       {"radius", in(c.spots.radius / d, " d")},
+      {"profile", c.spots.profile == spot::InfluenceProfile::parabolic ? "parabolic" : "uniform"},
       {"influence", in(c.spots.influence, "")},
       {"diffusion", in(c.spots.diffusion_length() / d, " d")},
       {"seed", std::to_string(c.spots.seed)},

@@ -77,7 +77,9 @@ def test_missing_keyword(tmp_path, keyword):
     ("outlet 0.5", ["outlet is at z = 0.5", "not above the orifice, 0"]),
     ("outlet -5.3", ["outlet is at z = -5.3", "simulation box begins at -4"]),
     ("radius 1.2 dz 0.1 outlet -2.5", ["outlet is at z = -2.5", "must be above -2.35", "reach of newborn spots"]),
-    ("radius 3.1", ["orifice radius is 3 ", "at least the spot radius, 3.1"]),
+    ("profile round", ["'profile round' is not known", "'parabolic' or 'uniform'"]),
+    ("profile uniform radius 3.1", ["orifice radius is 3 ", "at least the spot radius, 3.1"]),
+    ("radius 4.2", ["orifice radius is 3 ", "at least the spot radius, 3.09"]),
     ("buffer 5 1", ["walls along y are 8 apart", "at least 10"]),
 ], ids=lambda value: value if isinstance(value, str) else "")
 def test_value(tmp_path, words, said):

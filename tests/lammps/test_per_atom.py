@@ -51,7 +51,7 @@ def test_displacement_is_position_less_start(tmp_path, accuracy):
 
 def test_moves_without_relaxation(tmp_path):
     """Each takes a grain down by w dz, to the quantum."""
-    _, frames = fates(tmp_path, fix=FIX + " peratom yes relax never dz 0.4", run="run 20")
+    _, frames = fates(tmp_path, fix=FIX + " peratom yes relax never dz 0.4 profile uniform", run="run 20")
     end = frames[-1]
     assert -displacements(end)[:, 2] == pytest.approx(moves(end) * 1e-2 * 0.4, abs=1e-9)
     assert moves(end).max() > 50

@@ -463,13 +463,13 @@ TEST(DrainageUnit, MovesThatGrainsReceiveAreCounted) {
   drainage.advance_to(0.5);
   EXPECT_TRUE(drainage.take_moves_received().empty()) << "nobody has asked for it";
   const std::vector<Grain> before = drainage.grains();
-  const std::int64_t moved_before = drainage.counters().grains_moved;
+  const std::int64_t moved_before = drainage.counters().shares_moved;
   drainage.count_moves_received();
   drainage.advance_to(2.0);
   spot::MovesReceived received = drainage.take_moves_received();
   std::int64_t moved = 0;
   for (const auto& [id, moves] : received) moved += moves;
-  EXPECT_EQ(moved, drainage.counters().grains_moved - moved_before);
+  EXPECT_EQ(moved, drainage.counters().shares_moved - moved_before);
   EXPECT_GT(drainage.counters().drained, 0);
   // Without relaxation every move takes a grain down by as much.
   const double down = drainage.quantum().round(strong_spots().influence * strong_spots().step_height);

@@ -39,7 +39,7 @@ double largest_weight(const SpotParameters& parameters);
 
 /// The shares that the given grains have in a move, together.
 int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
-                    const SpotParameters& spots, MovesReceived* received = nullptr);
+                    const SpotParameters& spots);
 
 /// Moves every one of the given grains with its centre within R_s of the move's middle by its share of
 /// -weight * influence * step, rounded to the quantum (2006, eq. 1). Returns their shares together, and
