@@ -38,6 +38,9 @@ void WindowedDrainage::share_turns() {
       append(outgoing[static_cast<std::size_t>(rank)], turn.move);
     }
   }
+  // Most ranks are far away and have nothing to hear but that there are no spots for them.
+  for (Bytes& bytes : outgoing)
+    if (bytes.size() == sizeof(std::uint64_t)) bytes.clear();
   turns_.swap(kept);
   for (const Bytes& bytes : communicator_->exchange(std::move(outgoing))) {
     ByteReader reader(bytes);
