@@ -3,6 +3,7 @@
 """Change one choice of the spot model at a time, and say what that does to its distance from DEM."""
 
 import argparse
+import math
 import os
 import shlex
 import shutil
@@ -46,14 +47,21 @@ CHOICES = {
     "order of time, dz 0.4 d": {"options": f"accuracy exact dz {0.4 * D}"},
     "order of time, dz 0.1 d": {"options": "accuracy exact"},
     "spots of constant w": {"volume": "0"},
+    # Whole fractions of the deck's timestep, 0.5 tau; its own window is 0.01 tau.
+    **{f"window {window} tau": {"options": f"window {window * TAU}"} for window in (0.001, 0.0025, 0.005, 0.02, 0.05, 0.1)},
+    "order of time, dz 0.8 d": {"options": f"accuracy exact dz {0.8 * D}"},
+    "accuracy exact": {"options": "accuracy exact"},
 }
 QUANTITIES = {  # name in the comparison -> heading and factor
-    "outflow": ("outflow (1/tau)", 1), "flux_60d_over_outflow": ("flux 60 d", 1), "density_drop": ("drop", 1),
+    "outflow": ("outflow (1/tau)", 1), **{f"flux_{z}d_over_outflow": (f"flux {z} d", 1) for z in counts.FLUX_HEIGHTS},
+    "density_drop": ("drop", 1),
     "arrival_30d": ("t 30 d", 1), "arrival_60d": ("t 60 d", 1), "arrival_90d": ("t 90 d", 1),
-    "variance_slope": ("slope (d)", 1), "particle_diffusion": ("1e3 b_p (d)", 1e3), "correlation_length": ("beta (d)", 1),
+    "variance_slope": ("slope (d)", 1),
+    **{f"profile_variance_{z}d": (f"var {z} d (d^2)", 1) for z in profile_width.MOMENTS},
+    "particle_diffusion": ("1e3 b_p (d)", 1e3), "correlation_length": ("beta (d)", 1),
     "correlation_rms": ("C rms", 1), "rdf_l2_ratio": ("g(r)", 1), "g3_l2_ratio": ("g3", 1), "contacts_per_grain": ("contacts", 1),
-    "packing_fraction": ("fraction", 1), "badness_ratio": ("B/B_DEM", 1), "crystal_share": ("crystal", 1),
-    "speed_wall_over_middle": ("v wall", 1),
+    "packing_fraction": ("fraction", 1), "badness_ratio": ("B/B_DEM", 1), "largest_overlap": ("overlap (d)", 1),
+    "crystal_share": ("crystal", 1), "speed_wall_over_middle": ("v wall", 1),
 }
 
 
@@ -67,6 +75,8 @@ def parse_arguments():
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3], metavar="N")
     parser.add_argument("--only", nargs="+", choices=CHOICES, default=list(CHOICES), metavar="CHOICE")
     parser.add_argument("--parameters", metavar="FILE", help="of calibrate.py, in place of the deck's own")
+    parser.add_argument("--time", type=float, metavar="TAU", help="how long to drain (default: the deck's)")
+    parser.add_argument("--dumps", action="store_true", help="keep the dumps, too")
     return parser.parse_args()
 
 
@@ -78,6 +88,8 @@ def run_deck(options, choice, seed):
         dumps = os.path.abspath(os.path.join(options.output, name))
         variables = {"seed": str(seed), "out": dumps, **CHOICES[choice]}
         variables["options"] = f"accuracy normal {CHOICES[choice].get('options', '')}"
+        if options.time:
+            variables["time"] = str(options.time * TAU)
         if options.parameters:
             variables["parameters"] = os.path.abspath(options.parameters)
         words = [word for key, value in variables.items() for word in ("-var", key, value)]
@@ -88,7 +100,8 @@ def run_deck(options, choice, seed):
             reason = next((line for line in lines if line.startswith("ERROR")), lines[-1])
             raise AnalysisError(f"lmp failed on '{choice}': {reason}")
         run_statistics.measure(dumps, load_scene(dumps), name, {"source": choice}, concepts=MEASURED).save(stored)
-        shutil.rmtree(dumps)
+        if not options.dumps:
+            shutil.rmtree(dumps)
     return run_statistics.load(stored)
 
 
@@ -102,11 +115,15 @@ def numbers(dem, spot):
 
 
 def text(values, factor):
-    """Mean and standard deviation over seeds."""
+    """Mean and standard deviation over seeds, this to one digit and the mean as far."""
     known = [value * factor for value in values if value is not None]
     if not known:
         return "-"
-    return f"{np.mean(known):.3g}" + (f" +- {np.std(known, ddof=1):.1g}" if len(known) > 1 else "")
+    spread = np.std(known, ddof=1) if len(known) > 1 else 0
+    if spread == 0:
+        return f"{np.mean(known):.3g}"
+    digits = max(0, -math.floor(math.log10(spread)))
+    return f"{np.mean(known):.{digits}f} +- {spread:.{digits}f}"
 
 
 def main():

@@ -36,13 +36,25 @@ def test_table(study):
     assert done.returncode == 0, done.stderr
     heading, _, dem, row = (line.split(" | ") for line in done.stdout.splitlines())
     assert heading[1] == "outflow (1/tau)" and len(heading) == len(dem) == len(row)
-    assert dem[:2] == ["| DEM", "80"] and row[:2] == ["| alpha 1.0", "60 +- 3e+01"]  # 40 and 80
+    assert dem[:2] == ["| DEM", "80"] and row[:2] == ["| alpha 1.0", "60 +- 28"]  # 40 and 80
     assert sorted(path.name for path in (folder / "out").iterdir()) == ["alpha_1.0.1.npz", "alpha_1.0.2.npz"]
 
 
 def test_runs_are_kept(study):
     _, options, done = study
     assert one_factor(*options, "--lmp", "absent").stdout == done.stdout
+
+
+def test_time_and_dumps(study, tmp_path):
+    folder, options, _ = study
+    lmp = tmp_path / "lmp.py"
+    lmp.write_text("import sys\nprint(sys.argv[sys.argv.index('time') + 1], file=open('" + str(tmp_path / "time") + "', 'w'))\n"
+                   + (folder / "lmp.py").read_text())
+    done = one_factor(options[0], "-o", tmp_path / "out", "--seeds", 1, "--only", "alpha 1.0", "--time", 26, "--dumps",
+                      "--lmp", f"{sys.executable} {lmp}")
+    assert done.returncode == 0, done.stderr
+    assert float((tmp_path / "time").read_text()) == pytest.approx(26 * (0.003 / 9.81)**0.5)
+    assert (tmp_path / "out" / "alpha_1.0.1" / "scene.json").exists()
 
 
 def test_failing_runs_are_refused(study, tmp_path):
