@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Look for an imprint of the cells of the windowed driver in its dumps: number of grains, overlaps and sideways motion against the
-place in a cell, and, for comparison, in cells of other sizes that the driver knows nothing of."""
+distance to the nearest edge of a cell, and, for comparison, in cells of other sizes that the driver knows nothing of."""
 
 import argparse
 
@@ -47,7 +47,7 @@ def measure(options):
 
 def main():
     found = measure(parse_arguments())
-    print("| axis | quantity | blocks | chi-square (14) | p | rms deviation | of scatter alone | least, largest bin | p in cells of "
+    print("| axis | quantity | blocks | chi-square (7) | p | rms deviation | of scatter alone | at an edge, in the middle | p in cells of "
           + ", ".join(f"{period:g}" for period in CONTROLS) + " d |\n" + "|---" * 9 + "|")
     for axis in cell_imprint.AXES:
         for quantity in cell_imprint.QUANTITIES:
@@ -55,7 +55,7 @@ def main():
             deviation, scatter = one.depth()
             controls = ", ".join(f"{found[axis, period][quantity].p_value:.2f}" for period in CONTROLS)
             print(f"| {axis} | {quantity} | {one.blocks} | {one.chi_square:.1f} | {one.p_value:.2g} | {deviation:.4f} | {scatter:.4f} | "
-                  f"{one.profile.min():.3f}, {one.profile.max():.3f} | {controls} |")
+                  f"{one.profile[0]:.3f} +- {one.error[0]:.3f}, {one.profile[-1]:.3f} +- {one.error[-1]:.3f} | {controls} |")
 
 
 if __name__ == "__main__":

@@ -2,8 +2,9 @@
 """Do grains know where the cells begin in which the windowed driver relaxes them? Lengths in d.
 
 The cells are cubes of EDGE; the grid begins at the lowest x and y of any grain at the start, and at the outlet. Along x or z the
-grains are put into bins by their place in a cell, and in every bin are counted, with their overlaps and their motion sideways
-about the mean flow. Without an imprint all bins have the same of each.
+grains are put into bins by their distance to the nearest edge of a cell, and in every bin are counted, with their overlaps and
+their motion sideways about the mean flow, each less its mean over the length of a cell around, so that what changes slowly over
+the silo does not look like an imprint. Without one, nothing is left.
 
 What is known of the scatter comes from blocks, several cells long: what grains of one block do is tied together by their
 neighbours, over snapshots, and over runs from the same packing. So a block is one sample, summed over all of these.
@@ -19,9 +20,10 @@ from .mean_flow import UPPER, WALL_LAYER, Step, about_mean_flow
 from .structure import close_pairs
 
 EDGE = 1.5
-BINS = 15
+BINS = 15  # in a cell
+DISTANCES = (np.arange(BINS // 2 + 1) + 0.5) / BINS * EDGE  # middles of the bins, which are two each but for the last
 HALF_WIDTH, BOTTOM, TOP = 15.0, 25.0, 66.0  # of the bulk, in steady flow, far from side walls, outlet and surface
-CELLS, ACROSS = 4, 3.0  # size of a block: in cells along the axis, in d across
+CELLS, ACROSS = 4, 2.0  # size of a block: in cells along the axis, in d across
 AXES = {"x": (0, 2), "z": (2, 0)}  # the axis itself, and the one across
 QUANTITIES = ("grains", "overlap", "sideways")
 
@@ -31,38 +33,36 @@ def bulk(container):
 
 
 class Fold:
-    """Sums over grains in (blocks, BINS), by their block and their place in a cell along one axis."""
+    """Sums over grains along one axis, in bins of which BINS make a cell, in strips ACROSS wide."""
 
     def __init__(self, axis, origin, period, region):
         low, high = np.array([-region.half_width, 0, region.bottom]), np.array([region.half_width, 0, region.top])
         self._axes = AXES[axis]
         along, across = self._axes
-        first = np.ceil((low[along] - origin[along]) / period)
-        self._start = origin[along] + first * period, low[across]
-        self._size = CELLS * period, ACROSS
-        self._shape = tuple(int((high[a] - start) / size) for a, start, size in zip(self._axes, self._start, self._size))
+        self._start = origin[along] + np.ceil((low[along] - origin[along]) / period) * period, low[across]
+        self._size = period / BINS, ACROSS
+        cells, strips = int((high[along] - self._start[0]) / period), int((high[across] - low[across]) / ACROSS)
+        self._shape = cells * BINS, strips
         self._sums = {}
 
     def add(self, name, positions, values):
         """values : (n, k) of grains at positions (n, 3)"""
-        along, across = ((positions[:, a] - start) / size for a, start, size in zip(self._axes, self._start, self._size))
+        place = np.stack([(positions[:, a] - start) / size for a, start, size in zip(self._axes, self._start, self._size)])
+        along, across = np.floor(place).astype(np.int64)
         inside = (along >= 0) & (along < self._shape[0]) & (across >= 0) & (across < self._shape[1])
-        along, across = along[inside], across[inside]
-        place = (along * CELLS % 1 * BINS).astype(np.int64)
-        index = (along.astype(np.int64) * self._shape[1] + across.astype(np.int64)) * BINS + place
-        length = self._shape[0] * self._shape[1] * BINS
-        sums = np.stack([np.bincount(index, column, length) for column in values[inside].T], axis=-1)
+        index = across[inside] * self._shape[0] + along[inside]
+        sums = np.stack([np.bincount(index, column, self._shape[0] * self._shape[1]) for column in values[inside].T], axis=-1)
         self._sums[name] = self._sums.get(name, 0) + sums
 
     def sums(self, name):
-        """(blocks, BINS, k)"""
-        return self._sums[name].reshape(-1, BINS, self._sums[name].shape[-1])
+        """(strips, bins along the axis, k)"""
+        return self._sums[name].reshape(self._shape[1], self._shape[0], -1)
 
 
 @dataclass(frozen=True)
 class Imprint:
-    """profile, error : (BINS,) a quantity over its mean, with standard errors
-    chi_square : of the profile against a flat one, with BINS - 1 degrees of freedom, correlations of the bins included
+    """profile, error : at DISTANCES, a quantity over its mean, with standard errors
+    chi_square : of the profile against a flat one, with one degree of freedom less than bins, whose correlations are included
     p_value : chance of more without an imprint, by Hotelling's distribution, since the scatter is estimated too
     """
 
@@ -77,12 +77,23 @@ class Imprint:
         return np.sqrt(((self.profile - 1)**2).mean()), np.sqrt((self.error**2).mean())
 
 
+def around(sums):
+    """Mean over the length of a cell around each bin (strips, bins), without the outermost cells."""
+    total = np.cumsum(np.pad(sums, ((0, 0), (1, 0))), axis=1)
+    means = (total[:, BINS:] - total[:, :-BINS]) / BINS
+    return means[:, BINS - BINS // 2:][:, :sums.shape[1] - 2 * BINS]
+
+
 def imprint(sums, grains):
-    """The Imprint of what is summed in (blocks, BINS) over numbers of grains there; a block's own mean is taken off."""
-    off = sums - sums.sum(axis=1, keepdims=True) / grains.sum(axis=1, keepdims=True) * grains
-    blocks, freedom, scale = len(off), BINS - 1, sums.sum() / BINS
-    base = linalg.null_space(np.ones((1, BINS)))  # bins of a block add up to nothing
-    samples = off @ base
+    """The Imprint of what is summed (strips, bins) over so many grains."""
+    off = sums[:, BINS:-BINS] - around(sums) / around(grains) * grains[:, BINS:-BINS]
+    cells = off.shape[1] // BINS // CELLS * CELLS
+    off = off[:, :cells * BINS].reshape(-1, CELLS, BINS).sum(axis=1)
+    off = (off + off[:, ::-1])[:, :len(DISTANCES)] / 2
+    weight = np.where(np.arange(len(DISTANCES)) < BINS // 2, 2, 1)  # bins at this distance
+    off -= (off @ weight / BINS)[:, None]
+    blocks, freedom, scale = len(off), len(DISTANCES) - 1, sums[:, BINS:(cells + 1) * BINS].sum() / BINS
+    samples = off @ linalg.null_space(weight[None].astype(float))
     mean = samples.mean(axis=0)
     chi_square = float(mean @ np.linalg.solve(np.cov(samples.T) / blocks, mean))
     return Imprint(1 + off.sum(axis=0) / scale, off.std(axis=0, ddof=1) * np.sqrt(blocks) / scale, chi_square,
