@@ -13,8 +13,8 @@ import statistics
 import sys
 
 from measuring import (BENCHMARKS, ROOT, TAU, WARM_UP, BenchmarkError, Reference, command_line, cost_of, deck_variables,
-                       follow, number, program, provenance, quality, run, run_spot, spot_deck, spread, warn_of_others,
-                       write_json)
+                       follow, number, parallel, program, provenance, quality, run, run_spot, spot_deck, spread,
+                       warn_of_others, write_json)
 
 DEM_DECKS = ROOT / "liggghts-inputs" / "silo"
 PAPER_STEP = 1e-4  # tau
@@ -28,19 +28,12 @@ def ratio(dem, spot):
 
 # --- The programs -----------------------------------------------------------------------------------------------------
 
-def parallel(name, cores):
-    if cores == 1:
-        return [name]
-    options = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-    return ["mpirun", *options, "-np", cores, name]
-
-
 def dem_cost(output, section, timestep, repeats):
     """Of the last ``repeats`` stretches: the one before them holds what a new run does first."""
     marks = output.sections.get(section, [])[-repeats - 1:]
     if len(marks) != repeats + 1:
         raise BenchmarkError(f"{len(marks)} marks in '{section}' where {repeats + 1} are needed")
-    return cost_of([[pair] for pair in zip(marks, marks[1:])], timestep, output.memory)
+    return cost_of([[pair] for pair in zip(marks, marks[1:])], timestep, sum(output.memory))
 
 
 def time_liggghts(options, work):

@@ -38,10 +38,10 @@ def write_packing(path, grains, half_width, height, copies):
     kept = grains[(np.abs(grains[:, 0]) < half_width - 0.5 + WALL_OVERLAP) & (grains[:, 2] < height)]
     shifts = 2 * half_width * (np.arange(copies) - copies // 2)
     all_grains = np.concatenate([kept + (shift, 0, 0) for shift in shifts]) * DIAMETER
-    wide = half_width * copies
+    wide, top = half_width * copies, max(180, kept[:, 2].max() + 10)
     with open(path, "w", encoding="ascii") as out:
         out.write(f"Glass beads\n\n{len(all_grains)} atoms\n1 atom types\n\n{-wide * DIAMETER:.9g} {wide * DIAMETER:.9g} xlo xhi\n"
-                  f"{-4 * DIAMETER} {4 * DIAMETER} ylo yhi\n{-11 * DIAMETER} {180 * DIAMETER} zlo zhi\n\nAtoms # sphere\n\n")
+                  f"{-4 * DIAMETER} {4 * DIAMETER} ylo yhi\n{-11 * DIAMETER} {top * DIAMETER:.9g} zlo zhi\n\nAtoms # sphere\n\n")
         out.writelines(f"{number} 1 {DIAMETER} 2500 {x:.9g} {y:.9g} {z:.9g}\n" for number, (x, y, z) in enumerate(all_grains, 1))
     return len(all_grains), wide
 

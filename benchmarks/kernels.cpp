@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "read_grains.hpp"
 #include "spot/spot_walk.hpp"
 #include "spot/tiled_packing.hpp"
 
@@ -23,27 +22,11 @@ using spot::Point;
 using spot::Vector3;
 using spot::kernels::Kernels;
 
-constexpr double diameter_in_metres = 0.003;
 constexpr double quanta = 16777216.0;  // in a diameter, as TiledPacking has them
 constexpr double radius = 3.53, influence = 2.5e-3, step_height = 0.8, diffusion_length = 1.25;
 
-std::vector<spot::Grain> read_grains() {
-  const std::string command = "gzip -dc " SPOT_BENCHMARK_PACKING;
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  std::vector<spot::Grain> grains;
-  std::array<char, 256> line;
-  while (pipe && std::fgets(line.data(), line.size(), pipe.get())) {
-    long long id;
-    double x, y, z;
-    if (std::sscanf(line.data(), "%lld %*d %*f %*f %lf %lf %lf", &id, &x, &y, &z) == 4)
-      grains.push_back({id, Vector3(x, y, z) / diameter_in_metres});
-  }
-  if (grains.empty()) throw std::runtime_error("no grains in " SPOT_BENCHMARK_PACKING);
-  return grains;
-}
-
 const std::vector<spot::Grain>& grains() {
-  static const std::vector<spot::Grain> all = read_grains();
+  static const std::vector<spot::Grain> all = read_grains(SPOT_BENCHMARK_PACKING);
   return all;
 }
 

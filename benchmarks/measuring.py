@@ -68,11 +68,12 @@ class Mark:
 @dataclass(frozen=True)
 class Output:
     """sections : name -> marks, by the lines "benchmark: begin NAME"; notes : the words of all other "benchmark:" lines;
-    memory : largest resident memory, all ranks together (MB); allocated : what LAMMPS says at the begin of each run (MB)."""
+    memory : peak of each rank's resident memory, the largest first (MB); allocated : what LAMMPS says at the begin of each run (MB).
+    """
 
     sections: dict
     notes: list
-    memory: float
+    memory: list
     allocated: list
 
 
@@ -105,6 +106,14 @@ def peak_memory(pid):
     return math.nan
 
 
+def parallel(name, ranks):
+    """The words that start a program on so many MPI ranks, more than there are processors if need be."""
+    if ranks == 1:
+        return [name]
+    options = [*["--allow-run-as-root"][:os.geteuid() == 0], *["--oversubscribe"][:ranks > os.cpu_count()]]
+    return ["mpirun", *options, "-np", ranks, name]
+
+
 running = set()  # programs, for stop_programs()
 
 
@@ -120,7 +129,7 @@ def follow(name, command, folder, ranks=1):
     # A program that writes into a pipe keeps its lines back, and a mark must come when it is printed.
     command = ["stdbuf", "-oL", *map(str, command)]
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-    sections, notes, allocated, tail, memory = {}, [], [], [], math.nan
+    sections, notes, allocated, tail, memory = {}, [], [], [], []
     process = subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                text=True, errors="replace", start_new_session=True)
     running.add(process)
@@ -139,7 +148,7 @@ def follow(name, command, folder, ranks=1):
                 wall, tree = time.monotonic(), process_tree(process.pid)
                 values = dict(zip(words[3::2], map(float, words[4::2])))
                 marks.append(Mark(int(words[2]), values, sum(map(processor_clock, tree)), machine_clock(), wall))
-                memory = sum(sorted(map(peak_memory, tree))[-ranks:])  # launchers are smaller than ranks
+                memory = sorted(map(peak_memory, tree), reverse=True)[:ranks]  # launchers are smaller than ranks
             else:
                 notes.append(words[1:])
     finally:
@@ -206,10 +215,11 @@ def cost_of(repeats, timestep, memory):
 
 # --- The spot model ---------------------------------------------------------------------------------------------------
 
-def spot_deck(words="", data=None, half_width=None, timestep=None, before_fix=()):
+def spot_deck(words="", data=None, half_width=None, timestep=None, before_fix=(), restart=None):
     """The example's deck up to its output, with more words for fix spot, and benchmarks/in.spot after it.
 
-    data : another packing; half_width : of the silo along x (d); timestep : another one (tau); before_fix : commands to go there
+    data : another packing; restart : a file to go on from, instead; half_width : of the silo along x (d); timestep : another one
+    (tau); before_fix : commands to go there
     """
     commands = (EXAMPLE / "in.silo_spot").read_text().replace("&\n", " ").splitlines()
     commands = [command for command in commands if not OUTPUT_COMMANDS & set(command.split()[:1])]
@@ -220,9 +230,9 @@ def spot_deck(words="", data=None, half_width=None, timestep=None, before_fix=()
         walls = _only([number for number, word in enumerate(fix) if word == "box"], "box")
         fix[walls + 1:walls + 3] = [f"$(-{half_width}*v_d)", f"$({half_width}*v_d)"]
     commands[place] = " ".join(fix)
-    if data:
+    if data or restart:
         read = _only([number for number, command in enumerate(commands) if command.split()[:1] == ["read_data"]], "read_data")
-        commands[read] = f"read_data {data}"
+        commands[read] = f"read_restart {restart}" if restart else f"read_data {data}"
     commands[place:place] = before_fix
     if timestep:
         commands.append(f"timestep $({timestep}*v_tau)")
@@ -246,8 +256,13 @@ class SpotRun:
     timestep: float  # s
     interval: tuple
     overlap: float
-    memory: float  # MB
+    memory_of_ranks: list  # MB
     allocated: list
+
+    @property
+    def memory(self):
+        """MB"""
+        return sum(self.memory_of_ranks)
 
     def cost(self):
         return cost_of([self.pairs], self.timestep, self.memory)
@@ -262,14 +277,15 @@ class SpotRun:
         return grown / (sum(last.step - first.step for first, last in self.pairs) * self.timestep)
 
 
-def run_spot(name, lmp, folder, deck, warm_up, measure, seed=1, apart=SNAPSHOTS_APART, dumps=True):
+def run_spot(name, lmp, folder, deck, warm_up, measure, seed=1, apart=SNAPSHOTS_APART, dumps=True, ranks=1):
     """warm_up, measure, apart : tau; the first two are rounded up to whole intervals between snapshots, ``apart``."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "in.spot").write_text(deck)
     snapshots = math.ceil(measure / apart - 1e-9)
     variables = {"out": folder, "seed": seed, "warm_up": warm_up, "apart": apart, "snapshots": snapshots,
                  "dumps": "yes" if dumps else "no"}
-    output = follow(name, [lmp, "-in", folder / "in.spot", "-log", "none", *deck_variables(variables)], EXAMPLE)
+    output = follow(name, [*parallel(lmp, ranks), "-in", folder / "in.spot", "-log", "none", *deck_variables(variables)],
+                    EXAMPLE, ranks)
     said = {words[0]: words[1:] for words in output.notes}
     timestep, length = float(said["timestep"][0]), int(said["timestep"][2])  # "timestep TAU length STEPS"
     overlaps = [float(words[1]) for words in output.notes if words[0] == "overlap"]
