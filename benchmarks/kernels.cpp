@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Time of the kernels of spot-core for each instruction set that this processor has, and of the moves and sweeps that are made of
-// them, on the packing at rest of examples/silo. Lengths in grain diameters. See README.md.
+// Time of the kernels of spot-core for each instruction set that this processor has, and of the moves and sweeps that
+// are made of them, on the packing at rest of examples/silo. Lengths in grain diameters. See README.md.
 #include "../spot-core/src/kernel_builds.hpp"
 
 #include <benchmark/benchmark.h>
@@ -65,7 +65,9 @@ struct Tiles {
 
   Point point(const Vector3& position) const {
     const Vector3 at = (position - low) * quanta;
-    const auto wrap = [](double number) { return static_cast<std::int32_t>(static_cast<std::uint64_t>(std::llround(number))); };
+    const auto wrap = [](double number) {
+      return static_cast<std::int32_t>(static_cast<std::uint64_t>(std::llround(number)));
+    };
     return {wrap(at.x()), wrap(at.y()), wrap(at.z()), Point::free};
   }
 
@@ -102,8 +104,8 @@ struct Tiles {
       std::vector<std::uint32_t> near;
       std::uint32_t own = 0;
       for (const auto& [first, n] : rows(grain.position, reach)) {
-        const auto count = spot::kernels::best().find_within(points.data() + first, n, centre,
-                                                           static_cast<float>(reach * reach * quanta * quanta), first, found.data());
+        const auto count = spot::kernels::best().find_within(
+            points.data() + first, n, centre, static_cast<float>(reach * reach * quanta * quanta), first, found.data());
         near.insert(near.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
       }
       for (const std::uint32_t slot : near)
@@ -228,7 +230,8 @@ struct Silo {
   spot::TiledPacking packing{1.0, 200.0, 0.0, grains(), *container};
 };
 
-/// Moves of a window, with all that TiledPacking does for one: finding its cells, charging them, keeping lists up to date.
+/// Moves of a window, with all that TiledPacking does for one: finding its cells, charging them, keeping lists up to
+/// date.
 void moves_of_a_window(benchmark::State& state) {
   Silo silo;
   const auto n = static_cast<std::size_t>(state.range(0));
@@ -294,7 +297,9 @@ int main(int argc, char** argv) try {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   for (const Kernels* build : spot::kernels::runnable()) register_kernels(*build);
   const std::string best = spot::kernels::best().instruction_set;
-  benchmark::RegisterBenchmark(("TiledPacking_displace_window/" + best).c_str(), moves_of_a_window)->Arg(100)->Arg(2000);
+  benchmark::RegisterBenchmark(("TiledPacking_displace_window/" + best).c_str(), moves_of_a_window)
+      ->Arg(100)
+      ->Arg(2000);
   benchmark::RegisterBenchmark(("TiledPacking_sweep/" + best).c_str(), sweep_over_all);
   benchmark::RunSpecifiedBenchmarks();
 } catch (const std::exception& error) {

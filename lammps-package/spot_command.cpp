@@ -257,7 +257,7 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::I
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 5e-3 : 3e-3;
+  relaxation.tolerance = fast ? 5e-3 : 2.8e-3;
   relaxation.alpha = fast ? 1.2 : 0.8;
   relaxation.momentum = profile == spot::InfluenceProfile::parabolic ? 0.8 : fast ? 0.7 : 0.6;
   return relaxation;

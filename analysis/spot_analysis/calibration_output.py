@@ -37,7 +37,8 @@ def lammps_variables(parameters, source, span):
     To be included between these and the deck's own ``variable ... index``, which then leave alone what is set already.
     """
     lines = [f"# Calibrated by analysis/calibrate.py on {source}, {span[0]:g}-{span[1]:g} tau",
-             "# lmp -in in.silo_spot -var parameters THIS_FILE"]
+             "# lmp -in in.silo_spot -var parameters THIS_FILE",
+             "variable        profile    index uniform  # the spots that R_s is the radius of"]
     for name, factor in IN_THE_DECK.items():
         value, error = float(parameters[name].value), float(parameters[name].error)
         number = f"$({value:.6g}{factor})" if factor else f"{value:.6g}"

@@ -51,8 +51,8 @@ int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& gr
   return shares;
 }
 
-int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
-             const SpotParameters& spots, MovesReceived* received) {
+int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move, const SpotParameters& spots,
+             MovesReceived* received) {
   const Quantum& quantum = packing.quantum();
   const Vector3 whole = -spots.influence * move.weight * move.step;
   int shares = 0;

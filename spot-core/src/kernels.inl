@@ -7,11 +7,11 @@
 
 namespace {
 
-using spot::Point;
-using spot::kernels::ahead;
 using spot::Corrections;
-using spot::kernels::Lists;
+using spot::Point;
 using spot::Reach;
+using spot::kernels::ahead;
+using spot::kernels::Lists;
 
 /// Of a whole share.
 constexpr float parts = spot::whole_share;
@@ -367,7 +367,7 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 namespace spot::kernels {
 
 extern const Kernels SPOT_KERNELS;
-const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_shares, &displace, &push_off_neighbours,
-                              &correct,             &find_within,     &farthest, &find_reached};
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_shares, &displace,    &push_off_neighbours, &correct,
+                              &find_within,         &farthest,        &find_reached};
 
 }  // namespace spot::kernels

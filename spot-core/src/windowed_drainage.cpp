@@ -180,9 +180,7 @@ std::vector<Spot> WindowedDrainage::spots() const {
   return live;
 }
 
-std::size_t WindowedDrainage::memory() const {
-  return packing_.memory() + bytes_in(walkers_, turns_, moves_);
-}
+std::size_t WindowedDrainage::memory() const { return packing_.memory() + bytes_in(walkers_, turns_, moves_); }
 
 void WindowedDrainage::relax() {
   double overlap = 0.0;

@@ -118,7 +118,7 @@ def test_progress_and_table(result):
 def test_parameter_file_speaks_the_decks_language(result):
     lines = [line for line in result[2][0].read_text().splitlines() if not line.startswith("#")]
     deck = (ANALYSIS.parent / "examples" / "silo" / "in.silo_spot").read_text()
-    assert [line.split()[1] for line in lines] == ["radius", "influence", "volume", "diffusion", "speed", "injection"]
+    assert [line.split()[1] for line in lines] == ["profile", "radius", "influence", "volume", "diffusion", "speed", "injection"]
     for line in lines:
         command, name, style, formula = line.split("#")[0].split()
         assert (command, style) == ("variable", "index")

@@ -489,7 +489,8 @@ TEST(DrainageUnit, CountersAddUp) {
   const spot::Counters& counters = drainage.counters();
   EXPECT_GT(counters.moves, 1000);
   EXPECT_LE(counters.sweeps, counters.moves / 5);
-  EXPECT_DOUBLE_EQ(counters.grains_per_move(), static_cast<double>(counters.shares_moved) / spot::whole_share / static_cast<double>(counters.moves));
+  EXPECT_DOUBLE_EQ(counters.grains_per_move(), static_cast<double>(counters.shares_moved) / spot::whole_share /
+                                                   static_cast<double>(counters.moves));
 }
 
 TEST(DrainageUnit, AnEmptyPackingWorks) {

@@ -283,9 +283,9 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Treatments, TiledPackingBruteForce,
-                         testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_held_grains(), coincident(),
-                                         large_steps(), many_moves(), tall(), far_from_the_origin(), in_metres(),
-                                         in_a_cylinder(), in_a_funnel()),
+                         testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_held_grains(),
+                                         coincident(), large_steps(), many_moves(), tall(), far_from_the_origin(),
+                                         in_metres(), in_a_cylinder(), in_a_funnel()),
                          [](const auto& treatment) { return treatment.param.name; });
 
 TEST(TiledPackingBruteForce, LargestOverlapIsThatOfAllPairs) {
@@ -427,7 +427,8 @@ TEST(TiledPackingUnit, ASweepPaysForAsManyMovesAsMakeItDue) {
   std::vector<int> moved;
   for (const int due : {1, 2, 3, 7}) {
     // Of 14 moves one after the other, some paid for together.
-    for (int k = 0; k < 14; ++k) moved = carry_out(packing, one_move({0, 0, 5}, {0.7, 0, 0.1}), {2.6, 1e-5}, *silo, workers);
+    for (int k = 0; k < 14; ++k)
+      moved = carry_out(packing, one_move({0, 0, 5}, {0.7, 0, 0.1}), {2.6, 1e-5}, *silo, workers);
     std::size_t swept = 0;
     for (int sweep = 0; sweep < 14 / due; ++sweep) {
       const std::size_t now = packing.sweep({}, due, 1.0, *silo, workers);

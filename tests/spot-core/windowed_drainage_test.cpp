@@ -158,7 +158,8 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
 
 INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
                          testing::Values(Spots{"Poisson", 0.0, false}, Spots{"FixedVolume", 77.0, false},
-                                         Spots{"Parabolic", 77.0, false, true}, Spots{"Together", 0.0, true}, Spots{"FixedVolumeTogether", 77.0, true}),
+                                         Spots{"Parabolic", 77.0, false, true}, Spots{"Together", 0.0, true},
+                                         Spots{"FixedVolumeTogether", 77.0, true}),
                          [](const auto& spots) { return spots.param.name; });
 
 TEST(WindowedDrainageInvariance, ARerunIsIdentical) {

@@ -44,7 +44,7 @@ int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& gr
 /// Moves every one of the given grains with its centre within R_s of the move's middle by its share of
 /// -weight * influence * step, rounded to the quantum (2006, eq. 1). Returns their shares together, and
 /// counts the move for each of them in `received`, if there is one.
-int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
-             const SpotParameters& spots, MovesReceived* received = nullptr);
+int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move, const SpotParameters& spots,
+             MovesReceived* received = nullptr);
 
 }  // namespace spot

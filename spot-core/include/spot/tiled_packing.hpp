@@ -84,7 +84,8 @@ class TiledPacking {
   /// Collective. Applies the moves, one after the other to every grain, as displace() does. They are weighed before the
   /// first one is applied. Each cell that a move may have reached is charged one move. Lists are up to date afterwards.
   /// `moves`: those that may reach grains of this rank, in the order of (spot, number) if there are several ranks.
-  /// `received`, if there is one: counts the moves of each grain. Throws InvalidParameter unless the radius is below 8 diameters.
+  /// `received`, if there is one: counts the moves of each grain. Throws InvalidParameter unless the radius is below 8
+  /// diameters.
   void displace(std::vector<Move>& moves, const SpotParameters& spots, const Weigh& weigh, const Container& container,
                 Workers& workers, MovesReceived* received = nullptr);
 
@@ -126,7 +127,7 @@ class TiledPacking {
     std::vector<std::uint32_t> walled;  // places in `active` of those near walls
     std::vector<Point> pushes;
     std::vector<Corrections> corrections;  // of each cell
-    float depth;  // of the deepest overlap, as in a push
+    float depth;                           // of the deepest overlap, as in a push
   };
 
   struct TouchingPlane {
@@ -263,8 +264,8 @@ class TiledPacking {
   std::vector<std::size_t> end_of_rows_;  // in rows_, of each move
   std::vector<Point> middles_, steps_;
   Reach reach_{};
-  std::vector<int> shares_;                  // of this rank's grains in each move
-  std::vector<std::uint32_t> received_;      // moves of the grain in each slot, where they are counted
+  std::vector<int> shares_;              // of this rank's grains in each move
+  std::vector<std::uint32_t> received_;  // moves of the grain in each slot, where they are counted
   std::vector<std::uint32_t> found_, wandered_cells_, due_cells_;
   bool look_ = false;  // must lists be brought up to date before the next move?
   std::vector<Task> tasks_;
