@@ -121,10 +121,10 @@ spot::SpotParameters spot_parameters() {
   spots.profile = spot::InfluenceProfile::parabolic;
   spots.radius = 3.53;
   spots.influence = 2.5e-3;
-  spots.step_height = 0.8;
+  spots.step_height = 1.2;
   spots.step_width = spot::step_width_for(1.25, spots.step_height);
   spots.speed = 3.2;
-  spots.injection_rate = 375.0;
+  spots.injection_rate = 364.0;
   spots.fixed_volume = 77.0;
   return spots;
 }
@@ -136,7 +136,7 @@ std::shared_ptr<const spot::Container> silo() {
 template <typename Start>
 WindowedDrainage drainage(const Start& start, const std::shared_ptr<spot::Communicator>& ranks) {
   spot::RelaxationParameters relaxation;
-  relaxation.tolerance = 2.9e-3;
+  relaxation.tolerance = 2.8e-3;
   relaxation.momentum = 0.8;
   return {spot_parameters(), relaxation, spot::DrainageLimits{0.0}, window, 1, silo(), 1.0, 200.0, start, ranks};
 }

@@ -50,9 +50,9 @@ def settings(full):
           for name in ("normal", "fast", "exact")),
         *map(schedule, ["every 1", "every 10", "every 100", "every 1000", "chance 10", "chance 100", "chance 1000", "spot 10",
                         "global 1", "global 10", "global 100", "never"]),
-        # At dz 0.8 a tolerance is a small whole number of moves: these are 1, 2, 3, 4, 5, 6, 9, 12, 17, 30, 48.
+        *windowed("uniform", [1.5e-3, 2.1e-3, 2.6e-3, 3e-3, 3.8e-3, 5e-3], "profile uniform radius $(2.6*v_d) momentum 0.6 relax tol {}"),
         *windowed("tol", [1.5e-3, 2.1e-3, 2.6e-3, 3e-3, 3.4e-3, 3.8e-3, 4.4e-3, 5e-3, 6e-3, 8e-3, 1e-2], "relax tol {}"),
-        *windowed("dz", [0.025] * full + [0.05, 0.1, 0.2, 0.4, 0.8, 1.6], "dz $({}*v_d)"),
+        *windowed("dz", [0.025] * full + [0.05, 0.1, 0.2, 0.4, 0.8, 1.2, 1.6], "dz $({}*v_d)"),
         *windowed("window", [0.01, 0.02, 0.04, 0.1, 0.2], "window $({}*v_tau)"),
         *windowed("alpha", [0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6], "alpha {}"),
         *windowed("momentum", [0, 0.3, 0.5, 0.7, 0.8, 0.9], "momentum {}"),
@@ -186,7 +186,7 @@ def write_csv(path, points):
         writer.writerows(points)
 
 
-MARKERS = {"accuracy": "*", "2010 schedule": "s", "tol": "o", "dz": "D", "window": "v", "alpha": "^", "momentum": "P"}
+MARKERS = {"accuracy": "*", "2010 schedule": "s", "tol": "o", "dz": "D", "window": "v", "alpha": "^", "momentum": "P", "uniform": "X"}
 PANELS = {"badness_ratio": "$B / B_{DEM}$", "rdf_rms_relative": "rms of g(r) to DEM, over DEM's since the start",
           "packing_fraction_error": "packing fraction, error (%)", "outflow_error": "outflow, error (%)",
           "flux_error_60d": "flux at 60 d, error (%)", "largest_overlap": "largest overlap (d)"}
