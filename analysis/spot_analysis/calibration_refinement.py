@@ -54,7 +54,7 @@ def deck_text(deck, parameter_file, duration, words):
         raise CalibrationError(f"{deck}: {len(fixes)} commands 'fix ID group spot' where one was expected")
     commands[fixes[0]] += f" {words}"
     place = next((place for place, command in enumerate(commands)
-                  if command.split()[:1] == ["variable"] and command.split()[1:2][0] in IN_THE_DECK), fixes[0])
+                  if command.split()[:1] == ["variable"] and command.split()[1:2][0] in ("profile", *IN_THE_DECK)), fixes[0])
     return "\n".join([*commands[:place], f"include {parameter_file}", "variable time delete",
                       f"variable time equal {duration:g}*v_tau", *commands[place:], ""])
 

@@ -119,7 +119,8 @@ def test_parameter_file_speaks_the_decks_language(result):
     lines = [line for line in result[2][0].read_text().splitlines() if not line.startswith("#")]
     deck = (ANALYSIS.parent / "examples" / "silo" / "in.silo_spot").read_text()
     assert [line.split()[1] for line in lines] == ["profile", "radius", "influence", "volume", "diffusion", "speed", "injection"]
-    for line in lines:
+    assert lines[0].split("#")[0].split() == ["variable", "profile", "index", "uniform"]
+    for line in lines[1:]:
         command, name, style, formula = line.split("#")[0].split()
         assert (command, style) == ("variable", "index")
         assert f"${{{name}}}" in deck
@@ -227,7 +228,7 @@ def test_failing_runs_are_refused(measured, tmp_path):
 def test_deck_for_a_refinement():
     deck = ANALYSIS.parent / "examples" / "silo" / "in.silo_spot"
     lines = calibration_refinement.deck_text(str(deck), "/tmp/p", 90, "dz 0.0006").splitlines()
-    place = next(number for number, line in enumerate(lines) if line.split()[:2] == ["variable", "radius"])
+    place = next(number for number, line in enumerate(lines) if line.split()[:2] == ["variable", "profile"])
     assert lines[place - 3:place] == ["include /tmp/p", "variable time delete", "variable time equal 90*v_tau"]
     fix = next(line for line in lines if line.startswith("fix "))
     assert fix.endswith(" dz 0.0006") and "&" not in fix

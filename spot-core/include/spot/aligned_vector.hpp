@@ -9,7 +9,7 @@ namespace spot {
 /// Memory that begins with a cache line, and is backed by huge pages where it is long and the system has them. Throws
 /// std::bad_alloc.
 void* allocate_aligned(std::size_t bytes);
-void free_aligned(void* memory, std::size_t bytes);
+void free_aligned(void* memory);
 
 template <typename Value>
 struct AlignedAllocator {
@@ -20,7 +20,7 @@ struct AlignedAllocator {
   AlignedAllocator(const AlignedAllocator<Other>&) {}
 
   Value* allocate(std::size_t n) { return static_cast<Value*>(allocate_aligned(n * sizeof(Value))); }
-  void deallocate(Value* values, std::size_t n) { free_aligned(values, n * sizeof(Value)); }
+  void deallocate(Value* values, std::size_t) { free_aligned(values); }
 
   friend bool operator==(const AlignedAllocator&, const AlignedAllocator&) { return true; }
   friend bool operator!=(const AlignedAllocator&, const AlignedAllocator&) { return false; }
