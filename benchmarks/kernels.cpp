@@ -191,7 +191,7 @@ void push_off_neighbours(benchmark::State& state, const Kernels& kernels) {
   for (auto _ : state) {
     kernels.push_off_neighbours(all.points.data(), grains.data(), all.grains.size(),
                                 {all.lists.data(), all.list_size.data(), Tiles::list_capacity},
-                                {static_cast<float>(1.0 / (quanta * quanta)), 0.6f}, pushes.data());
+                                {static_cast<float>(1.0 / (quanta * quanta)), 0.4f, 0.8f}, pushes.data());
     benchmark::DoNotOptimize(pushes.data());
     benchmark::ClobberMemory();
   }

@@ -84,7 +84,8 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
                   dz = static_cast<float>(own.z - other.z);
       const float s = 1.0f - ((dx * dx + dy * dy) + dz * dz) * push.per_square;
       if (!(s > 0.0f)) continue;
-      const float scale = (push.share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
+      const float share = other.state == Point::due ? push.pair_share : push.fixed_share;
+      const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
       add(sum, static_cast<std::int32_t>(scale * dx), static_cast<std::int32_t>(scale * dy),
           static_cast<std::int32_t>(scale * dz));
       if (s > depth) depth = s;
@@ -106,6 +107,7 @@ void correct(Point* points, Point* last, const std::uint32_t* grains, const std:
       Point& by = last[*grains];
       by = {pushes->x + kept_of(by.x, kept), pushes->y + kept_of(by.y, kept), pushes->z + kept_of(by.z, kept), 0};
       add(points[*grains], by.x, by.y, by.z);
+      points[*grains].state = Point::free;
       const float squared = square_distance(by, {0, 0, 0, 0}, -1);
       if (squared > corrections[cell].longest_squared) corrections[cell].longest_squared = squared;
       float depth;
@@ -153,7 +155,7 @@ void correct(Point* points, Point* last, const std::uint32_t* grains, const std:
       const QuarterFloats carried = __builtin_convertvector(load_point(by), QuarterFloats) * kept;
       const Quarter step = (push + __builtin_convertvector(carried, Quarter)) & coordinates;
       store_point(step, by);
-      store_point(load_point(point) + step, point);
+      store_point((load_point(point) + step) & coordinates, point);
       const QuarterFloats f = __builtin_convertvector(step, QuarterFloats), squares = f * f;
       const QuarterFloats pairs = squares + __builtin_shufflevector(squares, squares, 1, 0, 3, 2);
       const QuarterFloats squared = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
@@ -319,7 +321,8 @@ inline Quarter reduce(Pack x, Pack y, Pack z, Floats s) {
 
 void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                          const spot::kernels::Push& push, Point* pushes) {
-  const Floats per_square = all(push.per_square), share = all(push.share), zero = all(0.0f);
+  const Floats per_square = all(push.per_square), zero = all(0.0f);
+  const Pack pair_share = (Pack)all(push.pair_share), fixed_share = (Pack)all(push.fixed_share);
   for (std::size_t i = 0; i < n; ++i) {
     const Point& own = points[grains[i]];
     const Pack x = all(own.x), y = all(own.y), z = all(own.z);
@@ -329,12 +332,14 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
     __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i + ahead]) * lists.capacity);
     const std::int32_t size = lists.size[grains[i]];
     for (std::int32_t k = 0; k < size; k += static_cast<std::int32_t>(width), list += width) {
-      // As many points as a pack has numbers, turned into their x, y and z.
+      // As many points as a pack has numbers, turned into their x, y, z and states.
       const Pack a = load_for_transpose(points, list, 0), b = load_for_transpose(points, list, 1);
       const Pack c = load_for_transpose(points, list, 2), d = load_for_transpose(points, list, 3);
       const Pack ab = low(a, b), cd = low(c, d);
       const Floats dx = floats(x - low_pairs(ab, cd)), dy = floats(y - high_pairs(ab, cd)),
                    dz = floats(z - low_pairs(high(a, b), high(c, d)));
+      const Pack is_due = high_pairs(high(a, b), high(c, d)) == Point::due;
+      const Floats share = (Floats)((is_due & pair_share) | (~is_due & fixed_share));
       const Floats apart = 1.0f - ((dx * dx + dy * dy) + dz * dz) * per_square;
       const Pack listed = numbers < size - k;
       const Floats s = (Floats)((Pack)(apart > zero ? apart : zero) & listed);

@@ -2,6 +2,7 @@
 #include "spot/tiled_packing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -350,25 +351,46 @@ void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {
   }
 }
 
+/// The kernel tells how deep each grain overlaps any other, in single precision; only those that may be the deepest so
+/// far are looked at closely.
 Overlap TiledPacking::largest_overlap() const {
+  constexpr std::uint32_t at_a_time = 1024;
+  constexpr double precision = 1e-5;
+  const double diameter = diameter_ / quantum_.length(), per_square = 1.0 / square(diameter);
+  std::array<std::uint32_t, at_a_time + kernels::ahead> grains{};
+  std::array<Point, at_a_time> pushes;
   Overlap largest;
-  double least = square(diameter_ / quantum_.length());
-  for (std::uint32_t i = first_owned() * capacity_; i < last_owned() * capacity_; ++i)
-    for (std::uint32_t k = 0; k < list_size_[i]; ++k) {
-      const std::uint32_t j = lists_[static_cast<std::size_t>(i) * list_capacity_ + k];
-      const double squared = squared_distance(points_[i], points_[j]);
-      if (squared >= least) continue;
-      least = squared;
-      largest = {1.0 - std::sqrt(squared) * quantum_.length() / diameter_, std::min(ids_[i], ids_[j]),
-                 std::max(ids_[i], ids_[j])};
-    }
+  double least = square(diameter);
+  for (std::uint32_t slot = first_owned() * capacity_, end = last_owned() * capacity_; slot < end;) {
+    std::uint32_t n = 0;
+    for (; slot < end && n < at_a_time; ++slot)
+      if (ids_[slot] >= 0) grains[n++] = slot;
+    kernels_->push_off_neighbours(points_.data(), grains.data(), n, {lists_.data(), list_size_.data(), list_capacity_},
+                                  {static_cast<float>(per_square), 0.0f, 0.0f}, pushes.data());
+    for (std::uint32_t k = 0; k < n; ++k)
+      if (depth_of(pushes[k]) > 1.0 - least * per_square - precision) find_larger_overlap(grains[k], least, largest);
+  }
   return largest;
+}
+
+/// `least`: the squared distance, in quanta, of the two grains with the largest overlap.
+void TiledPacking::find_larger_overlap(std::uint32_t slot, double& least, Overlap& largest) const {
+  for (std::uint32_t k = 0; k < list_size_[slot]; ++k) {
+    const std::uint32_t other = lists_[static_cast<std::size_t>(slot) * list_capacity_ + k];
+    const double squared = squared_distance(points_[slot], points_[other]);
+    if (squared >= least) continue;
+    least = squared;
+    largest = {1.0 - std::sqrt(squared) * quantum_.length() / diameter_, std::min(ids_[slot], ids_[other]),
+               std::max(ids_[slot], ids_[other])};
+  }
 }
 
 std::size_t TiledPacking::memory() const {
   std::size_t bytes = bytes_in(points_, references_, momenta_, ids_, near_wall_, cell_near_wall_, lists_, list_size_,
-                               marks_, account_, path_, rows_, near_rows_, end_of_rows_, middles_, steps_, shares_,
-                               received_, found_, wandered_cells_, due_cells_);
+                               marks_, account_, path_, middles_, steps_, shares_, received_, wandered_cells_,
+                               due_cells_, wandered_, findings_, parts_, cells_reached_);
+  for (const Part& part : parts_) bytes += bytes_in(part.rows, part.end_of_rows, part.shares);
+  for (const Finding& finding : findings_) bytes += bytes_in(finding.found, finding.ends, finding.rows);
   for (const Task& task : tasks_)
     bytes += bytes_in(task.active, task.in_cell, task.walled, task.pushes, task.corrections);
   return bytes;

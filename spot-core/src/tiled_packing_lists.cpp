@@ -25,14 +25,16 @@ void TiledPacking::list_all(const Container& container) {
   exchange_border(container);
 }
 
-void TiledPacking::update_lists(const Container& container) {
-  relist_wandered(container);
+void TiledPacking::update_lists(const Container& container, Workers& workers) {
+  find_wandered();
+  list_wandered(container, workers);
   if (communicator_->size() == 1) return;
   exchange_migrants(container);
   exchange_border(container);
 }
 
-void TiledPacking::relist_wandered(const Container& container) {
+/// Puts grains that are too far from their references into the cells where they are now, and into wandered_.
+void TiledPacking::find_wandered() {
   const double quantum = quantum_.length();
   const auto allowed = static_cast<std::int32_t>(0.5 * skin_ / quantum);
   const double kept = part_of_half_skin * allowed;
@@ -45,14 +47,13 @@ void TiledPacking::relist_wandered(const Container& container) {
     if (squared > kept * kept)
       for (std::uint32_t in_cell = 0; in_cell < capacity_; ++in_cell) {
         const Place place = {cell, in_cell};
-        if (squared_distance(points_[slot(place)], references_[slot(place)]) > kept * kept) relist(place, container);
+        if (squared_distance(points_[slot(place)], references_[slot(place)]) > kept * kept) move_reference(place);
       }
     path_[cell] = static_cast<std::int32_t>(std::min(1.001 * std::sqrt(squared), kept)) + 1;
   }
 }
 
-/// Lists the grain where it is now.
-void TiledPacking::relist(Place place, const Container& container) {
+void TiledPacking::move_reference(Place place) {
   const Vector3 at = from_low(points_[slot(place)], place.cell);
   const int layer = cell_coordinate(at.z(), 2);
   if (slabs_.owner(layer) != communicator_->rank()) {
@@ -72,7 +73,30 @@ void TiledPacking::relist(Place place, const Container& container) {
     note_change(slot(place));
   }
   references_[slot(place)] = points_[slot(place)];
-  list(slot(place), container);
+  wandered_.push_back(place);
+}
+
+/// All references are in place, and each list is a function of them: workers find them, and one thread writes them
+/// down.
+void TiledPacking::list_wandered(const Container& container, Workers& workers) {
+  const std::size_t n = wandered_.size(), tasks = static_cast<std::size_t>(workers.size());
+  findings_.resize(tasks);
+  workers.run([&](int worker) {
+    const auto w = static_cast<std::size_t>(worker);
+    Finding& finding = findings_[w];
+    finding.found.clear();
+    finding.ends.clear();
+    for (std::size_t k = n * w / tasks; k < n * (w + 1) / tasks; ++k) find_neighbours(slot(wandered_[k]), finding);
+  });
+  std::size_t k = 0;
+  for (const Finding& finding : findings_) {
+    std::size_t first = 0;
+    for (const std::size_t end : finding.ends) {
+      list(slot(wandered_[k++]), finding.found.data() + first, end - first, container);
+      first = end;
+    }
+  }
+  wandered_.clear();
 }
 
 void TiledPacking::unlist(std::uint32_t slot) {
@@ -90,16 +114,23 @@ void TiledPacking::rename(std::uint32_t from, std::uint32_t to) {
   list_size_[from] = 0;
 }
 
-/// Makes the list of a grain's neighbours, and brings theirs up to date. Most stay the same.
+/// Lists a grain and its neighbours with each other.
 void TiledPacking::list(std::uint32_t slot, const Container& container) {
-  const Point reference = references_[slot];
-  references_[slot] = nobody;  // so that it does not find itself
-  const std::size_t n = find_neighbours(reference, slot / capacity_);
+  findings_.resize(std::max<std::size_t>(findings_.size(), 1));
+  Finding& finding = findings_[0];
+  finding.found.clear();
+  finding.ends.clear();
+  find_neighbours(slot, finding);
+  list(slot, finding.found.data(), finding.ends[0], container);
+}
+
+/// Makes `found` a grain's neighbours, and brings their lists up to date. Most stay the same.
+void TiledPacking::list(std::uint32_t slot, const std::uint32_t* found, std::size_t n, const Container& container) {
   const std::uint32_t *old = list_of(slot), *end = old + list_size_[slot];
   for (const std::uint32_t* j = old; j != end; ++j) marks_[*j] = 1;
   for (std::size_t k = 0; k < n; ++k) {
-    if (marks_[found_[k]] == 0) add_neighbour(found_[k], slot);
-    marks_[found_[k]] = 0;
+    if (marks_[found[k]] == 0) add_neighbour(found[k], slot);
+    marks_[found[k]] = 0;
   }
   old = list_of(slot);  // lists may have become longer
   end = old + list_size_[slot];
@@ -108,27 +139,29 @@ void TiledPacking::list(std::uint32_t slot, const Container& container) {
     marks_[*j] = 0;
   }
   list_size_[slot] = 0;
-  for (std::size_t k = 0; k < n; ++k) add_neighbour(slot, found_[k]);
-  references_[slot] = reference;
+  for (std::size_t k = 0; k < n; ++k) add_neighbour(slot, found[k]);
   if (owned(slot / capacity_)) mark_near_wall(slot, container);
 }
 
-/// Puts the slots of all grains with references near this one, in this cell, into found_; returns how many.
-std::size_t TiledPacking::find_neighbours(const Point& reference, std::uint32_t cell) {
+/// Adds the slots of all other grains with references near this one's.
+void TiledPacking::find_neighbours(std::uint32_t slot, Finding& finding) const {
   const double reach = diameter_ + skin_;
   const auto reach_squared = static_cast<float>(square(reach / quantum_.length()));
-  near_rows_.clear();
+  Point centre = references_[slot];
   const int held = static_cast<int>(cells() / cells_in_layer());
-  find_rows(from_low(reference, cell), reach, first_layer_, first_layer_ + held, near_rows_);
-  Point centre = reference;
+  finding.rows.clear();
+  find_rows(from_low(centre, slot / capacity_), reach, first_layer_, first_layer_ + held, finding.rows);
   centre.state = Point::free;
-  std::size_t found = 0;
-  for (const Row& row : near_rows_) {
+  std::size_t end = finding.ends.empty() ? 0 : finding.ends.back();
+  const auto before = static_cast<std::ptrdiff_t>(end);
+  for (const Row& row : finding.rows) {
     const std::uint32_t first = row.first * capacity_, n = (row.last - row.first) * capacity_;
-    if (found_.size() < found + n) found_.resize(found + n);
-    found += kernels_->find_within(references_.data() + first, n, centre, reach_squared, first, found_.data() + found);
+    if (finding.found.size() < end + n) finding.found.resize(end + n);
+    end +=
+        kernels_->find_within(references_.data() + first, n, centre, reach_squared, first, finding.found.data() + end);
   }
-  return found;
+  const auto own = finding.found.begin() + before, last = finding.found.begin() + static_cast<std::ptrdiff_t>(end);
+  finding.ends.push_back(static_cast<std::size_t>(std::remove(own, last, slot) - finding.found.begin()));
 }
 
 void TiledPacking::remove_neighbour(std::uint32_t slot, std::uint32_t neighbour) {

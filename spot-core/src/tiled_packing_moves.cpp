@@ -43,104 +43,118 @@ double TiledPacking::reach_of_move(double radius) const {
 void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spots, const Weigh& weigh,
                             const Container& container, Workers& workers, MovesReceived* received) {
   require_radius(spots.radius, diameter_);
-  const auto limit = static_cast<std::int32_t>((0.5 * skin_ + leeway_in_diameters * diameter_) / quantum_.length());
-  find_moves(moves, spots);
-  find_shares(workers);
+  find_moves(moves, spots, workers);
   weigh(shares_, moves);
   steps_.clear();
   for (const Move& move : moves) steps_.push_back(wrapped(-spots.influence * move.weight * move.step));
   for (std::size_t first = 0;;) {
-    const std::size_t end = end_before_a_look(moves, first, limit);
-    for (std::size_t m = first; m < end; ++m) charge(m);
+    const std::size_t end = end_before_a_look(moves, first, workers);
     if (received) received_.assign(points_.size(), 0);
-    apply_moves(first, end, workers, received != nullptr);
+    workers.run(
+        [&](int worker) { apply_moves(parts_[static_cast<std::size_t>(worker)], first, end, received != nullptr); });
     if (received)
       for (std::size_t slot = 0; slot < received_.size(); ++slot)
         if (received_[slot] > 0) (*received)[ids_[slot]] += received_[slot];
-    update_lists(container);
+    update_lists(container, workers);
     first = end;
     if (!look_) return;
   }
 }
 
-/// Where the moves are, and the rows of this rank's cells that they may reach.
-void TiledPacking::find_moves(const std::vector<Move>& moves, const SpotParameters& spots) {
-  const int first_layer = first_layer_ + border_[0], last_layer = first_layer + rank_layers();
+/// Shares this rank's layers out among the workers, by how many cells the moves of the last window reached in each:
+/// most grains then stay with the same processor, whose memory is near.
+void TiledPacking::set_parts(int workers) {
+  cells_reached_.resize(static_cast<std::size_t>(rank_layers()), 1);
+  const Slabs slabs(cells_reached_, workers);
+  parts_.resize(static_cast<std::size_t>(workers));
+  for (int worker = 0; worker < workers; ++worker) {
+    parts_[static_cast<std::size_t>(worker)].first_layer = first_layer_ + border_[0] + slabs.first(worker);
+    parts_[static_cast<std::size_t>(worker)].last_layer = first_layer_ + border_[0] + slabs.first(worker + 1);
+  }
+  std::fill(cells_reached_.begin(), cells_reached_.end(), 1);
+}
+
+/// Where the moves are, and what they reach.
+void TiledPacking::find_moves(const std::vector<Move>& moves, const SpotParameters& spots, Workers& workers) {
   const double radius_squared = square(spots.radius / quantum_.length());
   reach_.radius_squared = static_cast<float>(radius_squared);
   reach_.per_square = spots.profile == InfluenceProfile::uniform ? 1.0f : static_cast<float>(1.0 / radius_squared);
   middles_.clear();
-  rows_.clear();
-  end_of_rows_.clear();
-  for (const Move& move : moves) {
-    middles_.push_back(wrapped(move.middle - low_));
-    find_rows(move.middle - low_, reach_of_move(spots.radius), first_layer, last_layer, rows_);
-    end_of_rows_.push_back(rows_.size());
+  for (const Move& move : moves) middles_.push_back(wrapped(move.middle - low_));
+  set_parts(workers.size());
+  workers.run([&](int worker) { find_moves(parts_[static_cast<std::size_t>(worker)], moves, spots.radius); });
+  shares_.assign(moves.size(), 0);
+  for (const Part& part : parts_)
+    for (std::size_t m = 0; m < moves.size(); ++m) shares_[m] += part.shares[m];
+}
+
+/// The rows of cells that the moves may reach, and the shares of the grains there.
+void TiledPacking::find_moves(Part& part, const std::vector<Move>& moves, double radius) {
+  part.rows.clear();
+  part.end_of_rows.clear();
+  part.shares.clear();
+  for (std::size_t m = 0; m < moves.size(); ++m) {
+    const std::size_t before = part.rows.size();
+    find_rows(moves[m].middle - low_, reach_of_move(radius), part.first_layer, part.last_layer, part.rows);
+    int shares = 0;
+    for (std::size_t r = before; r < part.rows.size(); ++r) {
+      const Row& row = part.rows[r];
+      shares += kernels_->enclosed_shares(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_,
+                                          middles_[m], reach_);
+      cells_reached_[(row.first - first_owned()) / cells_in_layer()] += row.last - row.first;
+    }
+    part.end_of_rows.push_back(part.rows.size());
+    part.shares.push_back(shares);
   }
 }
 
-void TiledPacking::find_shares(Workers& workers) {
-  const std::size_t n = middles_.size(), tasks = static_cast<std::size_t>(workers.size());
-  shares_.assign(n, 0);
-  workers.run([&](int worker) {
-    const auto w = static_cast<std::size_t>(worker);
-    for (std::size_t m = n * w / tasks; m < n * (w + 1) / tasks; ++m)
-      for (std::size_t r = first_row(m); r < end_of_rows_[m]; ++r)
-        shares_[m] += kernels_->enclosed_shares(points_.data() + rows_[r].first * capacity_,
-                                                (rows_[r].last - rows_[r].first) * capacity_, middles_[m], reach_);
-  });
-}
-
 /// The end of the moves that can be applied before grains may be too far from their references for the next, on any
-/// rank; look_ tells whether there is such a next. Their steps are added to the paths of the cells.
-std::size_t TiledPacking::end_before_a_look(const std::vector<Move>& moves, std::size_t first, std::int32_t limit) {
-  std::size_t lengthened = first;
+/// rank; look_ tells whether there is such a next.
+std::size_t TiledPacking::end_before_a_look(const std::vector<Move>& moves, std::size_t first, Workers& workers) {
+  const auto limit = static_cast<std::int32_t>((0.5 * skin_ + leeway_in_diameters * diameter_) / quantum_.length());
+  workers.run([&](int worker) { lengthen(parts_[static_cast<std::size_t>(worker)], first, limit); });
+  std::size_t end = moves.size();
   bool look = false;
-  while (lengthened < moves.size() && !look) look = lengthen(lengthened++, limit);
-  const std::int64_t own = look ? turn_of(moves[lengthened - 1]) : never, turn = communicator_->least(own);
+  for (const Part& part : parts_) {
+    look |= part.look;
+    if (part.look) end = std::min(end, part.lengthened);
+  }
+  const std::int64_t own = look ? turn_of(moves[end - 1]) : never, turn = communicator_->least(own);
   look_ = turn != never;
-  if (turn == own) return lengthened;
-  while (lengthened > first && turn_of(moves[lengthened - 1]) > turn) shorten(--lengthened);
-  return lengthened;
+  while (turn != own && end > first && turn_of(moves[end - 1]) > turn) --end;
+  return end;
 }
 
-/// Adds a move's length to the paths of the cells that it may reach; is one of them beyond the limit?
-bool TiledPacking::lengthen(std::size_t move, std::int32_t limit) {
-  const std::int32_t length = length_of(steps_[move]);
-  bool reached = false;
-  for (std::size_t r = first_row(move); r < end_of_rows_[move]; ++r)
-    for (std::uint32_t cell = rows_[r].first; cell < rows_[r].last; ++cell) {
+/// Adds the lengths of moves to the paths of the cells that they may reach, until one of these is beyond the limit.
+void TiledPacking::lengthen(Part& part, std::size_t first, std::int32_t limit) {
+  part.look = false;
+  part.lengthened = first;
+  while (part.lengthened < middles_.size() && !part.look) {
+    const std::int32_t length = length_of(steps_[part.lengthened]);
+    part.visit_cells(part.lengthened++, [&](std::uint32_t cell) {
       path_[cell] += length;
-      reached |= path_[cell] > limit;
+      part.look |= path_[cell] > limit;
+    });
+  }
+}
+
+/// Charges the cells of a worker's part for some moves, and applies these in their order. Paths are taken back to their
+/// end.
+void TiledPacking::apply_moves(Part& part, std::size_t first, std::size_t end, bool count) {
+  for (; part.lengthened > end; --part.lengthened)
+    part.visit_cells(part.lengthened - 1,
+                     [&](std::uint32_t cell) { path_[cell] -= length_of(steps_[part.lengthened - 1]); });
+  std::vector<std::uint32_t> found;
+  for (std::size_t m = first; m < end; ++m) {
+    part.visit_cells(
+        m, [&](std::uint32_t cell) { account_[cell] = std::min(account_[cell] + parts_of_move, deepest_in_debt); });
+    for (std::size_t r = part.first_row(m); r < part.end_of_rows[m]; ++r) {
+      const Row& row = part.rows[r];
+      if (count) count_received(row, middles_[m], found);
+      kernels_->displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middles_[m],
+                         reach_, steps_[m]);
     }
-  return reached;
-}
-
-void TiledPacking::shorten(std::size_t move) {
-  for (std::size_t r = first_row(move); r < end_of_rows_[move]; ++r)
-    for (std::uint32_t cell = rows_[r].first; cell < rows_[r].last; ++cell) path_[cell] -= length_of(steps_[move]);
-}
-
-void TiledPacking::charge(std::size_t move) {
-  for (std::size_t r = first_row(move); r < end_of_rows_[move]; ++r)
-    for (std::uint32_t cell = rows_[r].first; cell < rows_[r].last; ++cell)
-      account_[cell] = std::min(account_[cell] + parts_of_move, deepest_in_debt);
-}
-
-void TiledPacking::apply_moves(std::size_t first, std::size_t last, Workers& workers, bool count) {
-  // A worker owns some layers of the grid, and applies all moves in them, in order.
-  const auto n = static_cast<std::uint32_t>(workers.size());
-  workers.run([&](int worker) {
-    std::vector<std::uint32_t> found;
-    for (std::size_t m = first; m < last; ++m)
-      for (std::size_t r = first_row(m); r < end_of_rows_[m]; ++r) {
-        const Row& row = rows_[r];
-        if (n > 1 && row.first / cells_in_layer() % n != static_cast<std::uint32_t>(worker)) continue;
-        if (count) count_received(row, middles_[m], found);
-        kernels_->displace(points_.data() + row.first * capacity_, (row.last - row.first) * capacity_, middles_[m],
-                           reach_, steps_[m]);
-      }
-  });
+  }
 }
 
 /// Counts a move for the grains that it is about to move.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <algorithm>
+
 #include "kernels.hpp"
 #include "spot/errors.hpp"
 #include "spot/tiled_packing.hpp"
@@ -94,7 +96,8 @@ void TiledPacking::visit_layer(std::uint32_t first_cell, const Visit& visit) con
     if (ids_[slot] >= 0) visit(slot);
 }
 
-/// What has changed in the layer next to a neighbour's since it was told last, and where all grains in it are.
+/// What has changed in the layer next to a neighbour's since it was told last, the accounts of its cells, and where all
+/// grains in it are.
 Bytes TiledPacking::changes(int side) {
   std::vector<Change> changed;
   const std::uint32_t first = first_of_border(side, true);
@@ -104,6 +107,8 @@ Bytes TiledPacking::changes(int side) {
   changed_[static_cast<std::size_t>(side)].clear();
   Bytes bytes;
   append(bytes, changed);
+  const auto account = account_.begin() + first;
+  append(bytes, std::vector<std::int32_t>(account, account + cells_in_layer()));
   visit_layer(first, [&](std::uint32_t slot) {
     append(bytes, Moved{points_[slot].x, points_[slot].y, points_[slot].z});
   });
@@ -127,6 +132,8 @@ void TiledPacking::take_changes(const Bytes& bytes, int side, const Container& c
       occupy(slot({first + change.in_layer, change.in_cell}), change.id, change.point, change.reference);
   for (const Change& change : changed)
     if (change.id >= 0) list(slot({first + change.in_layer, change.in_cell}), container);
+  const auto accounts = reader.take_all<std::int32_t>();
+  std::copy(accounts.begin(), accounts.end(), account_.begin() + first);
   visit_layer(first, [&](std::uint32_t slot) {
     const auto moved = reader.take<Moved>();
     points_[slot].x = moved.x;

@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "kernels.hpp"
 #include "spot/tiled_packing.hpp"
 #include "wrapped_integers.hpp"
 
 namespace spot {
-
-namespace {
-
-float depth_of(const Point& push) {
-  float depth;
-  std::memcpy(&depth, &push.state, sizeof depth);
-  return depth;
-}
-
-}  // namespace
 
 std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double due, double deepest,
                                 const Container& container, Workers& workers) {
@@ -33,6 +22,8 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
     tasks_[k].first = static_cast<std::uint32_t>(n * k / tasks);
     tasks_[k].last = static_cast<std::uint32_t>(n * (k + 1) / tasks);
   }
+  workers.run([&](int worker) { collect(tasks_[static_cast<std::size_t>(worker)]); });
+  set_border(Point::free, Point::due, parts);
   workers.run([&](int worker) { push_apart(tasks_[static_cast<std::size_t>(worker)], parameters, container); });
   if (!container.concurrent())
     for (Task& task : tasks_) push_off_other_walls(task, parameters.fixed_share(), container);
@@ -41,7 +32,8 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
     apply(tasks_[static_cast<std::size_t>(worker)], parts, static_cast<float>(2.0 * deepest),
           static_cast<float>(parameters.momentum));
   });
-  update_lists(container);
+  set_border(Point::due, Point::free, parts);
+  update_lists(container, workers);
   std::int64_t swept = 0;
   float depth = 0.0f;
   for (const Task& task : tasks_) {
@@ -52,7 +44,8 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
   return static_cast<std::size_t>(communicator_->sum(swept));
 }
 
-void TiledPacking::collect(Task& task) const {
+/// Finds the grains in the cells of a task, which are due from now on.
+void TiledPacking::collect(Task& task) {
   task.active.resize(static_cast<std::size_t>(task.last - task.first) * capacity_ + kernels::ahead);
   task.walled.clear();
   task.in_cell.clear();
@@ -60,8 +53,12 @@ void TiledPacking::collect(Task& task) const {
   for (std::uint32_t k = task.first; k < task.last; ++k) {
     const std::uint32_t before = n, first = due_cells_[k] * capacity_;
     for (std::uint32_t slot = first; slot < first + capacity_; ++slot) {
+      // Without branches, which no processor could foresee.
+      std::int32_t& state = points_[slot].state;
+      const bool is_free = state == Point::free;
+      state = is_free ? Point::due : state;
       task.active[n] = slot;
-      n += points_[slot].state == Point::free ? 1 : 0;
+      n += is_free ? 1 : 0;
     }
     task.in_cell.push_back(static_cast<std::uint8_t>(n - before));
     if (cell_near_wall_[due_cells_[k]] == 0) continue;
@@ -72,13 +69,26 @@ void TiledPacking::collect(Task& task) const {
   std::fill_n(task.active.begin() + n, kernels::ahead, 0u);
 }
 
+/// Changes the state of the copies of grains in other ranks' cells that are due there.
+void TiledPacking::set_border(std::int32_t from, std::int32_t to, std::int32_t due) {
+  const auto set = [&](std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t cell = first; cell < last; ++cell) {
+      if (account_[cell] < due) continue;
+      for (std::uint32_t slot = cell * capacity_; slot < (cell + 1) * capacity_; ++slot)
+        if (points_[slot].state == from) points_[slot].state = to;
+    }
+  };
+  set(0, first_owned());
+  set(last_owned(), cells());
+}
+
 void TiledPacking::push_apart(Task& task, const RelaxationParameters& parameters, const Container& container) const {
-  collect(task);
   task.pushes.resize(task.grains);
   const double diameter = diameter_ / quantum_.length();
   kernels_->push_off_neighbours(
       points_.data(), task.active.data(), task.grains, {lists_.data(), list_size_.data(), list_capacity_},
-      {static_cast<float>(1.0 / (diameter * diameter)), static_cast<float>(parameters.pair_share())},
+      {static_cast<float>(1.0 / (diameter * diameter)), static_cast<float>(parameters.pair_share()),
+       static_cast<float>(parameters.fixed_share())},
       task.pushes.data());
   part_coincident(task, parameters.pair_share() * diameter_);
   push_off_planes(task, static_cast<float>(parameters.fixed_share()));

@@ -7,8 +7,18 @@ namespace spot {
 
 namespace {
 
-/// Rounds of looking for the next job before a thread goes to sleep; jobs mostly follow each other within microseconds.
-constexpr int rounds_awake = 20000;
+/// Rounds of looking for the next job before a thread goes to sleep, some milliseconds: longer than what one thread
+/// does alone between two jobs, since waking up takes longer than most jobs.
+constexpr int rounds_awake = 200000;
+
+/// Between two looks, so that the look costs the other threads of the same core, and the bus, little; now and then
+/// other programs have their turn, in case there are more threads than processors.
+void rest(int round) {
+#ifdef __x86_64__
+  __builtin_ia32_pause();
+#endif
+  if (round % 64 == 63) std::this_thread::yield();
+}
 
 }  // namespace
 
@@ -41,13 +51,12 @@ void Workers::run(const std::function<void(int)>& job) {
   }
   wake_.notify_all();
   job(0);
-  while (busy_ != 0) std::this_thread::yield();
+  for (int k = 0; busy_ != 0; ++k) rest(k);
 }
 
 void Workers::help(int worker) {
   for (int seen = 0;; ++seen) {
-    for (int k = 0; k < rounds_awake && round_ == seen; ++k)
-      if (k % 64 == 63) std::this_thread::yield();
+    for (int k = 0; k < rounds_awake && round_ == seen; ++k) rest(k);
     if (round_ == seen) {
       std::unique_lock<std::mutex> lock(mutex_);
       wake_.wait(lock, [&] { return round_ != seen; });

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "spot/point.hpp"
 
@@ -27,6 +28,13 @@ inline double squared_distance(const Point& a, const Point& b) {
 inline std::int32_t length_of(const Point& by) {
   const double squared = square(by.x) + square(by.y) + square(by.z);
   return static_cast<std::int32_t>(std::min(std::sqrt(squared), 1e9)) + 1;
+}
+
+/// How deep the grain of a push overlaps any other: 1 - r^2/d^2.
+inline float depth_of(const Point& push) {
+  float depth;
+  std::memcpy(&depth, &push.state, sizeof depth);
+  return depth;
 }
 
 }  // namespace spot

@@ -169,11 +169,16 @@ struct Listed {
 
   spot::kernels::Lists lists() const { return {neighbours.data(), sizes.data(), capacity}; }
 
-  std::vector<Point> pushes(const Kernels& build, float share) const {
+  /// Half of the free grains are due.
+  std::vector<Point> pushes(const Kernels& build) const {
+    auto marked = points;
+    for (std::size_t i = 0; i < marked.size(); i += 2)
+      if (marked[i].state == Point::free) marked[i].state = Point::due;
     std::vector<Point> all(grains.size());
     auto padded = grains;
     padded.resize(grains.size() + spot::kernels::ahead, 0);
-    build.push_off_neighbours(points.data(), padded.data(), grains.size(), lists(), {per_square, share}, all.data());
+    build.push_off_neighbours(marked.data(), padded.data(), grains.size(), lists(), {per_square, 0.4f, 0.8f},
+                              all.data());
     return all;
   }
 };
@@ -181,7 +186,7 @@ struct Listed {
 TEST(KernelsInvariance, PushesAreTheSameInEveryBuild) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Listed listed(seed, seed % 2 == 0 ? 16 : 32);
-    const auto plain = listed.pushes(base, 0.4f);
+    const auto plain = listed.pushes(base);
     int pushed = 0, coincident = 0;
     for (const Point& push : plain) {
       pushed += depth_of(push) > 0.0f;
@@ -189,7 +194,7 @@ TEST(KernelsInvariance, PushesAreTheSameInEveryBuild) {
     }
     EXPECT_GT(pushed, 20);
     EXPECT_LT(coincident, pushed);
-    for (const Kernels* build : spot::kernels::runnable()) expect_same(listed.pushes(*build, 0.4f), plain, *build);
+    for (const Kernels* build : spot::kernels::runnable()) expect_same(listed.pushes(*build), plain, *build);
   }
 }
 
@@ -206,10 +211,10 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
     const double overlap = 0.05 * draws.uniform(0.0, 1.0);
     spot::Vector3 along = draws.in_box({-1, -1, -1}, {1, 1, 1});
     along.normalize();
-    const std::vector<Point> points = {point_at({1, 1, 1}), point_at(spot::Vector3(1, 1, 1) + (1.0 - overlap) * along)};
+    std::vector<Point> points = {point_at({1, 1, 1}), point_at(spot::Vector3(1, 1, 1) + (1.0 - overlap) * along)};
     std::vector<Point> pushes(2);
-    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), sizes.data(), 16}, {per_square, 0.4f},
-                             pushes.data());
+    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), sizes.data(), 16},
+                             {per_square, 0.2f, 0.4f}, pushes.data());
     const spot::Vector3 push(pushes[0].x, pushes[0].y, pushes[0].z);
     // To 1e-4 of itself, and what single precision leaves of 1 - r^2/d^2, and one quantum along each axis.
     const double error = 1e-4 * 0.4 * overlap + 1e-6;
@@ -218,6 +223,12 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
     EXPECT_EQ(pushes[0].x, -pushes[1].x) << "action is reaction";
     EXPECT_EQ(pushes[0].y, -pushes[1].y);
     EXPECT_EQ(pushes[0].z, -pushes[1].z);
+    points[1].state = Point::due;
+    std::vector<Point> half(2);
+    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), sizes.data(), 16},
+                             {per_square, 0.2f, 0.4f}, half.data());
+    EXPECT_NEAR(half[0].x, 0.5 * pushes[0].x, 1.0) << "the pair's share";
+    expect_same({half[1]}, {pushes[1]}, base);
   }
 }
 
@@ -233,6 +244,7 @@ struct Correcting {
     const auto whole = [&draws](double most) { return static_cast<std::int32_t>(draws.uniform(-most, most)); };
     for (std::uint32_t i = 0; i < n; ++i) {
       grains.push_back(3 * i + 1);
+      points[grains[i]].state = Point::due;
       last[grains[i]] = {whole(1e5), whole(1e5), whole(1e5), 0};
       const auto depth = static_cast<float>(draws.uniform(0.0, 0.1));
       pushes.push_back({whole(1e6), whole(1e6), whole(1e6), 0});
@@ -267,7 +279,7 @@ TEST(KernelsAnalytic, CorrectionsAreThePushAndAPartOfTheLast) {
                       expected(before.pushes[i].z, before.last[grain].z), 0};
     expect_same({after.last[grain]}, {by}, base);
     EXPECT_EQ(after.points[grain].y, wrapped(std::int64_t{before.points[grain].y} + by.y));
-    EXPECT_EQ(after.points[grain].state, before.points[grain].state);
+    EXPECT_EQ(after.points[grain].state, Point::free);
     longest = std::max(longest, squared_distance(by, {0, 0, 0, 0}));
     deepest = std::max<double>(deepest, depth_of(before.pushes[i]));
     expect_same({after.points[grain - 1]}, {before.points[grain - 1]}, base);

@@ -54,13 +54,20 @@ class PlainPacking {
 
   spot::MovesReceived received;
 
-  /// Over all grains.
+  /// Over all grains that are not held.
   void sweep(const spot::RelaxationParameters& parameters) {
+    sweep(parameters, [](std::int64_t) { return true; });
+  }
+
+  /// Over those of them for which due(id) holds.
+  template <typename Due>
+  void sweep(const spot::RelaxationParameters& parameters, const Due& due) {
+    for (Body& body : bodies_) body.due = !body.held && due(body.id);
     std::vector<Place> pushes;
-    for (const Body& body : bodies_) pushes.push_back(body.held ? Place{0, 0, 0} : push_on(body, parameters));
+    for (const Body& body : bodies_) pushes.push_back(body.due ? push_on(body, parameters) : Place{0, 0, 0});
     const auto momentum = static_cast<float>(parameters.momentum);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (bodies_[i].held) continue;
+      if (!bodies_[i].due) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto carried = static_cast<std::int64_t>(momentum * static_cast<float>(bodies_[i].last[axis]));
         bodies_[i].last[axis] = pushes[i][axis] + carried;
@@ -91,6 +98,7 @@ class PlainPacking {
     std::int64_t id;
     bool held;
     Place at, last;
+    bool due = false;
   };
 
   float squared_distance(const Body& body, const spot::Move& move) const {
@@ -129,7 +137,6 @@ class PlainPacking {
   Place push_on(const Body& own, const spot::RelaxationParameters& parameters) const {
     const double diameter = diameter_ / quantum_.length();
     const auto per_square = static_cast<float>(1.0 / (diameter * diameter));
-    const auto share = static_cast<float>(parameters.pair_share());
     Place sum = {0, 0, 0};
     const auto add = [&sum](const Place& push) {
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += push[axis];
@@ -140,6 +147,7 @@ class PlainPacking {
                   z = difference(own.at[2], other.at[2]);
       const float s = 1.0f - ((x * x + y * y) + z * z) * per_square;
       if (!(s > 0.0f)) continue;
+      const auto share = static_cast<float>(other.due ? parameters.pair_share() : parameters.fixed_share());
       const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
       add({static_cast<std::int64_t>(scale * x), static_cast<std::int64_t>(scale * y),
            static_cast<std::int64_t>(scale * z)});

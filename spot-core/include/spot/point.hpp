@@ -15,7 +15,8 @@ struct alignas(16) Point {
 
   /// States count as a fourth coordinate when distances to a move are measured, so that nothing that must stay is ever
   /// within reach of one.
-  static constexpr std::int32_t free = 0, held = 1 << 29, empty = 1 << 30;
+  /// A grain that is due is free, and moves in the sweep that is being made.
+  static constexpr std::int32_t free = 0, due = 1, held = 1 << 29, empty = 1 << 30;
 };
 
 /// Shares of grains in moves are counted in so many parts, so that sums are exact.

@@ -90,8 +90,9 @@ class TiledPacking {
                 Workers& workers, MovesReceived* received = nullptr);
 
   /// Collective. One sweep over the cells that are due, those charged with `due` moves or more, which pays for `due` of
-  /// them; a cell in which a grain was overlapped by more than `deepest` diameters stays due. Returns the number of
-  /// grains swept on all ranks, 0 when no cell was due. Lists are up to date afterwards.
+  /// them; grains of other cells stay where they are, and those due go all the way themselves. A cell in which a grain
+  /// was overlapped by more than `deepest` diameters stays due. Returns the number of grains swept on all ranks, 0 when
+  /// no cell was due. Lists are up to date afterwards.
   std::size_t sweep(const RelaxationParameters& parameters, double due, double deepest, const Container& container,
                     Workers& workers);
 
@@ -118,6 +119,23 @@ class TiledPacking {
     int x, y, z;
   };
 
+  /// What one worker does of a window's moves: what they do in some of this rank's layers.
+  struct Part {
+    int first_layer, last_layer;
+    std::vector<Row> rows;                 // of cells that moves may reach, move by move
+    std::vector<std::size_t> end_of_rows;  // in `rows`, of each move
+    std::vector<int> shares;               // of the grains here in each move
+    std::size_t lengthened;                // the end of the moves whose lengths are in paths
+    bool look;                             // did a path become too long?
+
+    std::size_t first_row(std::size_t move) const { return move == 0 ? 0 : end_of_rows[move - 1]; }
+    template <typename Visit>
+    void visit_cells(std::size_t move, const Visit& visit) const {
+      for (std::size_t r = first_row(move); r < end_of_rows[move]; ++r)
+        for (std::uint32_t cell = rows[r].first; cell < rows[r].last; ++cell) visit(cell);
+    }
+  };
+
   /// What one worker has to do in a sweep.
   struct Task {
     std::uint32_t first, last;          // of due_cells_
@@ -128,6 +146,13 @@ class TiledPacking {
     std::vector<Point> pushes;
     std::vector<Corrections> corrections;  // of each cell
     float depth;                           // of the deepest overlap, as in a push
+  };
+
+  /// The neighbours that one worker has found, of one grain after the other.
+  struct Finding {
+    std::vector<std::uint32_t> found;
+    std::vector<std::size_t> ends;  // in `found`, of each grain
+    std::vector<Row> rows;
   };
 
   struct TouchingPlane {
@@ -179,15 +204,17 @@ class TiledPacking {
 
   // Lists.
   void list_all(const Container& container);
-  void update_lists(const Container& container);
-  void relist_wandered(const Container& container);
-  void relist(Place place, const Container& container);
+  void update_lists(const Container& container, Workers& workers);
+  void find_wandered();
+  void move_reference(Place place);
+  void list_wandered(const Container& container, Workers& workers);
   void unlist(std::uint32_t slot);
   void rename(std::uint32_t from, std::uint32_t to);
   void list(std::uint32_t slot, const Container& container);
+  void list(std::uint32_t slot, const std::uint32_t* found, std::size_t n, const Container& container);
   void find_planes(const Container& container);
   void other_contacts(const Container& container, const Vector3& centre, double reach, WallContacts& contacts) const;
-  std::size_t find_neighbours(const Point& reference, std::uint32_t cell);
+  void find_neighbours(std::uint32_t slot, Finding& finding) const;
   void remove_neighbour(std::uint32_t slot, std::uint32_t neighbour);
   std::uint32_t* list_of(std::uint32_t slot) { return lists_.data() + static_cast<std::size_t>(slot) * list_capacity_; }
   void add_neighbour(std::uint32_t slot, std::uint32_t neighbour);
@@ -204,20 +231,20 @@ class TiledPacking {
   std::uint32_t first_of_border(int side, bool own) const;
 
   // Moves.
-  bool lengthen(std::size_t move, std::int32_t limit);
-  void shorten(std::size_t move);
-  void charge(std::size_t move);
-  std::size_t first_row(std::size_t move) const { return move == 0 ? 0 : end_of_rows_[move - 1]; }
   double reach_of_move(double radius) const;
-  std::size_t end_before_a_look(const std::vector<Move>& moves, std::size_t first, std::int32_t limit);
-  void find_moves(const std::vector<Move>& moves, const SpotParameters& spots);
-  void find_shares(Workers& workers);
-  void apply_moves(std::size_t first, std::size_t last, Workers& workers, bool count);
+  void set_parts(int workers);
+  void find_moves(const std::vector<Move>& moves, const SpotParameters& spots, Workers& workers);
+  void find_moves(Part& part, const std::vector<Move>& moves, double radius);
+  std::size_t end_before_a_look(const std::vector<Move>& moves, std::size_t first, Workers& workers);
+  void lengthen(Part& part, std::size_t first, std::int32_t limit);
+  void apply_moves(Part& part, std::size_t first, std::size_t end, bool count);
   void count_received(const Row& row, const Point& middle, std::vector<std::uint32_t>& found);
 
   // Sweeps.
-  void collect(Task& task) const;
+  void collect(Task& task);
+  void set_border(std::int32_t from, std::int32_t to, std::int32_t due);
   void push_apart(Task& task, const RelaxationParameters& parameters, const Container& container) const;
+  void find_larger_overlap(std::uint32_t slot, double& least, Overlap& largest) const;
   void part_coincident(Task& task, double push) const;
   void push_off_planes(Task& task, float strength) const;
   void push_off_other_walls(Task& task, double strength, const Container& container) const;
@@ -260,13 +287,15 @@ class TiledPacking {
   std::vector<std::int32_t> path_;     // of each cell: no grain in it is farther from its reference, in quanta
 
   // Kept between calls to save allocations.
-  std::vector<Row> rows_, near_rows_;
-  std::vector<std::size_t> end_of_rows_;  // in rows_, of each move
+  std::vector<Part> parts_;                  // one for each worker
+  std::vector<std::int64_t> cells_reached_;  // by the moves of a window, in each layer of this rank, and 1
   std::vector<Point> middles_, steps_;
   Reach reach_{};
   std::vector<int> shares_;              // of this rank's grains in each move
   std::vector<std::uint32_t> received_;  // moves of the grain in each slot, where they are counted
-  std::vector<std::uint32_t> found_, wandered_cells_, due_cells_;
+  std::vector<std::uint32_t> wandered_cells_, due_cells_;
+  std::vector<Place> wandered_;
+  std::vector<Finding> findings_;
   bool look_ = false;  // must lists be brought up to date before the next move?
   std::vector<Task> tasks_;
 };
