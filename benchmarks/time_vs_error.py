@@ -38,9 +38,12 @@ class Setting:
     measure: float = math.inf  # tau, at most
 
 
+UNIFORM = "profile uniform radius $(2.6*v_d)"  # 2006's and 2010's spots
+
+
 def settings(full):
     def schedule(name):
-        return Setting("2010 schedule", name, f"relax {name} dz $(0.1*v_d) alpha 0.8", SLOW if name == "every 1" else math.inf)
+        return Setting("2010 schedule", name, f"{UNIFORM} relax {name} dz $(0.1*v_d) alpha 0.8", SLOW if name == "every 1" else math.inf)
 
     def windowed(family, values, words):
         return [Setting(family, f"{family} {value:g}", words.format(value)) for value in values]
@@ -50,7 +53,7 @@ def settings(full):
           for name in ("normal", "fast", "exact")),
         *map(schedule, ["every 1", "every 10", "every 100", "every 1000", "chance 10", "chance 100", "chance 1000", "spot 10",
                         "global 1", "global 10", "global 100", "never"]),
-        *windowed("uniform", [1.5e-3, 2.1e-3, 2.6e-3, 3e-3, 3.8e-3, 5e-3], "profile uniform radius $(2.6*v_d) momentum 0.6 relax tol {}"),
+        *windowed("uniform", [1.5e-3, 2.1e-3, 2.6e-3, 3e-3, 3.8e-3, 5e-3], UNIFORM + " relax tol {}"),
         *windowed("tol", [1.5e-3, 2.1e-3, 2.6e-3, 3e-3, 3.4e-3, 3.8e-3, 4.4e-3, 5e-3, 6e-3, 8e-3, 1e-2], "relax tol {}"),
         *windowed("dz", [0.025] * full + [0.05, 0.1, 0.2, 0.4, 0.8, 1.2, 1.6], "dz $({}*v_d)"),
         *windowed("window", [0.01, 0.02, 0.04, 0.1, 0.2], "window $({}*v_tau)"),

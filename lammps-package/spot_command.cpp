@@ -257,9 +257,9 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::I
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 5e-3 : 2.8e-3;
-  relaxation.alpha = fast ? 1.2 : 0.8;
-  relaxation.momentum = profile == spot::InfluenceProfile::parabolic ? 0.8 : fast ? 0.7 : 0.6;
+  relaxation.tolerance = fast ? 4e-3 : 2.7e-3;
+  relaxation.alpha = fast ? 1.0 : 0.8;
+  relaxation.momentum = profile == spot::InfluenceProfile::uniform ? 0.5 : fast ? 0.6 : 0.7;
   return relaxation;
 }
 
