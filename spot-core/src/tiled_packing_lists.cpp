@@ -79,6 +79,7 @@ void TiledPacking::move_reference(Place place) {
 /// All references are in place, and each list is a function of them: workers find them, and one thread writes them
 /// down.
 void TiledPacking::list_wandered(const Container& container, Workers& workers) {
+  if (wandered_.empty()) return;
   const std::size_t n = wandered_.size(), tasks = static_cast<std::size_t>(workers.size());
   findings_.resize(tasks);
   workers.run([&](int worker) {
