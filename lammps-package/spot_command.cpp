@@ -249,7 +249,9 @@ double SpotCommand::radius_in_diameters(spot::InfluenceProfile profile) {
   return profile == spot::InfluenceProfile::uniform ? 2.6 : 3.53;
 }
 
-double SpotCommand::step_height_in_diameters(Accuracy accuracy) { return accuracy == Accuracy::exact ? 0.1 : 1.2; }
+double SpotCommand::step_height_in_diameters(Accuracy accuracy) {
+  return accuracy == Accuracy::exact ? 0.1 : accuracy == Accuracy::normal ? 1.2 : 2.4;
+}
 
 spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile) {
   // Chosen from the curves of benchmarks/time_vs_error.py. More momentum and a larger alpha are cheaper for the same
