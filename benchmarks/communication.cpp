@@ -23,6 +23,7 @@
 #include "read_grains.hpp"
 #include "spot/spot_walk.hpp"
 #include "spot/windowed_drainage.hpp"
+#include "spot_command.h"
 
 namespace {
 
@@ -121,9 +122,9 @@ spot::SpotParameters spot_parameters() {
   spots.profile = spot::InfluenceProfile::parabolic;
   spots.radius = 3.53;
   spots.influence = 2.5e-3;
-  spots.step_height = 1.2;
-  spots.step_width = spot::step_width_for(1.25, spots.step_height);
-  spots.speed = 3.2;
+  spots.step_height = SpotCommand::step_height_in_diameters(Accuracy::normal);
+  spots.step_width = spot::step_width_for(1.35, spots.step_height);
+  spots.speed = 3.0;
   spots.injection_rate = 364.0;
   spots.fixed_volume = 77.0;
   return spots;
@@ -135,10 +136,17 @@ std::shared_ptr<const spot::Container> silo() {
 
 template <typename Start>
 WindowedDrainage drainage(const Start& start, const std::shared_ptr<spot::Communicator>& ranks) {
-  spot::RelaxationParameters relaxation;
-  relaxation.tolerance = 2.8e-3;
-  relaxation.momentum = 0.8;
-  return {spot_parameters(), relaxation, spot::DrainageLimits{0.0}, window, 1, silo(), 1.0, 200.0, start, ranks};
+  const spot::SpotParameters spots = spot_parameters();
+  return {spots,
+          SpotCommand::relaxation_of(Accuracy::normal, spots.profile),
+          spot::DrainageLimits{0.0},
+          window,
+          1,
+          silo(),
+          1.0,
+          200.0,
+          start,
+          ranks};
 }
 
 /// Of drawing one birth (s), which every rank does for all births.

@@ -6,18 +6,17 @@ The packing of examples/silo is cut or repeated along x; there is always one ori
 Each silo runs with two timesteps, which tells what LAMMPS does in a step from what the spots cost. See README.md.
 """
 
-import csv
 import gzip
 import math
 import sys
 
 import numpy as np
 
-from measuring import (DIAMETER, EXAMPLE, WARM_UP, command_line, number, output_file, provenance, run, run_spot, say,
-                       spot_deck, warn_of_others, write_json)
+from measuring import (DIAMETER, EXAMPLE, WARM_UP, add_table_options, command_line, number, provenance, run, run_spot, say,
+                       spot_deck, warn_of_others, write_csv, write_json)
 
 WALL_OVERLAP = 0.014  # d; a little more than the largest in the example's packing
-SPOT_SPEED = 3.2  # d/tau
+SPOT_SPEED = 3.0  # d/tau, of the example
 # Grains -> half width and height (d) that are cut from the example's silo, and copies of it along x; odd, so that none ends at the orifice.
 SILOS = {5_000: (10, 27, 1), 22_000: (10, 200, 1), 55_000: (25, 200, 1), 165_000: (25, 200, 3), 495_000: (25, 200, 9),
          1_045_000: (25, 200, 19)}
@@ -134,19 +133,14 @@ def benchmark(options, work):
     warn_of_others({f"{one['grains']:,} grains": one["others"] for one in points})
     about = provenance()
     write_json(options.json, [{**one, **about} for one in points])
-    if options.csv:
-        with open(options.csv, "w", newline="", encoding="utf-8") as out:
-            writer = csv.DictWriter(out, [key for key in points[0] if key != "interval_tau"], extrasaction="ignore")
-            writer.writeheader()
-            writer.writerows(points)
+    write_csv(options.csv, points)
     if options.png:
         draw(options.png, points)
 
 
 def parse():
     parser = command_line(__doc__)
-    parser.add_argument("--csv", metavar="FILE", type=output_file, help="write one row a case there")
-    parser.add_argument("--png", metavar="FILE", type=output_file, help="draw the numbers there")
+    add_table_options(parser, "case", "numbers")
     parser.add_argument("--warm-up", type=number(float, 0), default=WARM_UP, metavar="TAU",
                         help=f"flow before (default {WARM_UP}; less in low silos)")
     parser.add_argument("--measure", type=number(float, 2), default=16, metavar="TAU", help="timed flow (default 16; less in low silos)")

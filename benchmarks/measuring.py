@@ -3,6 +3,7 @@
 
 import argparse
 import contextlib
+import csv
 import ctypes
 import datetime
 import json
@@ -381,6 +382,17 @@ def write_json(path, result):
         path.write_text(json.dumps(result, indent=2) + "\n")
 
 
+def write_csv(path, rows):
+    """A column for every key of any row, apart from those of lists."""
+    if not path:
+        return
+    columns = dict.fromkeys(key for row in rows for key, value in row.items() if not isinstance(value, (list, tuple, dict)))
+    with open(path, "w", newline="", encoding="utf-8") as out:
+        writer = csv.DictWriter(out, columns, extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
 def number(kind, least):
     def read(word):
         try:
@@ -416,6 +428,12 @@ def command_line(description):
                         help="lmp with fix spot (default build/bin/lmp)")
     parser.add_argument("--keep", metavar="DIR", type=pathlib.Path, help="keep decks and snapshots in this new or empty folder")
     return parser
+
+
+def add_table_options(parser, row, picture):
+    """For benchmarks that end with a table, each of whose rows is a `row`, and draw it as a `picture`."""
+    parser.add_argument("--csv", metavar="FILE", type=output_file, help=f"write one row a {row} there")
+    parser.add_argument("--png", metavar="FILE", type=output_file, help=f"draw the {picture} there")
 
 
 def run(benchmark, options):

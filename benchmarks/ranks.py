@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from growth import SPOT_SPEED, example_grains, write_packing
-from measuring import (EXAMPLE, ROOT, WARM_UP, BenchmarkError, command_line, number, output_file, program, provenance, run,
-                       run_spot, say, spot_deck, stop_programs, warn_of_others, write_json)
+from measuring import (EXAMPLE, ROOT, WARM_UP, BenchmarkError, add_table_options, command_line, number, program, provenance, run,
+                       run_spot, say, spot_deck, stop_programs, warn_of_others, write_csv, write_json)
 
 HALF_WIDTH = 25  # d, of the example's silo
 STUDIES = ("strong", "weak", "memory", "communication")
@@ -266,14 +266,6 @@ def table(study, rows):
     return "\n".join(lines)
 
 
-def write_csv(path, rows):
-    columns = list(dict.fromkeys(key for row in rows for key in row))
-    with open(path, "w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, columns)
-        writer.writeheader()
-        writer.writerows(rows)
-
-
 def draw(path, rows):
     import matplotlib
     matplotlib.use("Agg")
@@ -323,16 +315,14 @@ def benchmark(options, work):
     warn_of_others({row["case"]: row["others"] for row in rows if "others" in row})
     write_json(options.json, {"rows": rows, "inputs": inputs, "warm_up_tau": options.warm_up, "measure_tau": options.measure,
                               "seed": 1, "fix_options": options.fix, **provenance()})
-    if options.csv:
-        write_csv(options.csv, rows)
+    write_csv(options.csv, rows)
     if options.png:
         draw(options.png, rows)
 
 
 def parse():
     parser = command_line(__doc__)
-    parser.add_argument("--csv", metavar="FILE", type=output_file, help="write one row a case there")
-    parser.add_argument("--png", metavar="FILE", type=output_file, help="draw the numbers there")
+    add_table_options(parser, "case", "numbers")
     parser.add_argument("--only", nargs="+", choices=STUDIES, default=STUDIES, metavar="STUDY",
                         help=f"some of {', '.join(STUDIES)} (the model comes with the last)")
     parser.add_argument("--warm-up", type=number(float, 4), default=WARM_UP, metavar="TAU", help=f"flow before (default {WARM_UP})")

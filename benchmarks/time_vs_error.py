@@ -5,7 +5,6 @@ momentum of the windowed driver, in the silo of examples/silo. See README.md.
 """
 
 import concurrent.futures
-import csv
 import json
 import math
 import pathlib
@@ -13,8 +12,8 @@ import statistics
 import sys
 from dataclasses import dataclass
 
-from measuring import (WARM_UP, BenchmarkError, Reference, command_line, number, output_file, provenance, quality, run,
-                       run_spot, say, spot_deck, stop_programs, warn_of_others, write_json)
+from measuring import (WARM_UP, BenchmarkError, Reference, add_table_options, command_line, number, provenance, quality, run,
+                       run_spot, say, spot_deck, stop_programs, warn_of_others, write_csv, write_json)
 
 # "2010": Rycroft, Wong, Bazant, Powder Technology 200, 1-11, full drainage of 55,000 grains on one core of a 2.67 GHz Xeon.
 # Setting -> seconds spent on relaxation, B over B of their DEM.
@@ -181,14 +180,6 @@ def table_2010(points):
     return lines
 
 
-def write_csv(path, points):
-    columns = [key for key, value in points[0].items() if not isinstance(value, (list, tuple, dict))]
-    with open(path, "w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, columns, extrasaction="ignore")
-        writer.writeheader()
-        writer.writerows(points)
-
-
 MARKERS = {"accuracy": "*", "2010 schedule": "s", "tol": "o", "dz": "D", "window": "v", "alpha": "^", "momentum": "P", "uniform": "X"}
 PANELS = {"badness_ratio": "$B / B_{DEM}$", "rdf_rms_relative": "rms of g(r) to DEM, over DEM's since the start",
           "packing_fraction_error": "packing fraction, error (%)", "outflow_error": "outflow, error (%)",
@@ -249,8 +240,7 @@ def benchmark(options, work):
     known = [*published, *({"family": "DEM", "setting": name, "processor": processor, "badness_ratio": 1}
                            for name, processor in dem.items())]
     write_json(options.json, [{**one, "jobs": options.jobs, **about} for one in points] + [{**one, **about} for one in known])
-    if options.csv:
-        write_csv(options.csv, points)
+    write_csv(options.csv, points)
     if options.png:
         draw(options.png, points, published, dem)
 
@@ -258,8 +248,7 @@ def benchmark(options, work):
 def parse():
     families = list(MARKERS)
     parser = command_line(__doc__)
-    parser.add_argument("--csv", metavar="FILE", type=output_file, help="write one row a setting there")
-    parser.add_argument("--png", metavar="FILE", type=output_file, help="draw the curves there")
+    add_table_options(parser, "setting", "curves")
     parser.add_argument("--seeds", type=number(int, 1), default=1, metavar="N", help="runs of each setting, with seeds 1 to N (default 1)")
     parser.add_argument("--jobs", type=number(int, 1), default=1, metavar="N",
                         help="runs at a time (default 1, without which times are too high)")

@@ -85,8 +85,7 @@ void TiledPacking::list_wandered(const Container& container, Workers& workers) {
   workers.run([&](int worker) {
     const auto w = static_cast<std::size_t>(worker);
     Finding& finding = findings_[w];
-    finding.found.clear();
-    finding.ends.clear();
+    finding.clear();
     for (std::size_t k = n * w / tasks; k < n * (w + 1) / tasks; ++k) find_neighbours(slot(wandered_[k]), finding);
   });
   std::size_t k = 0;
@@ -119,8 +118,7 @@ void TiledPacking::rename(std::uint32_t from, std::uint32_t to) {
 void TiledPacking::list(std::uint32_t slot, const Container& container) {
   findings_.resize(std::max<std::size_t>(findings_.size(), 1));
   Finding& finding = findings_[0];
-  finding.found.clear();
-  finding.ends.clear();
+  finding.clear();
   find_neighbours(slot, finding);
   list(slot, finding.found.data(), finding.ends[0], container);
 }

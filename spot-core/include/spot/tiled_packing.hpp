@@ -153,6 +153,11 @@ class TiledPacking {
     std::vector<std::uint32_t> found;
     std::vector<std::size_t> ends;  // in `found`, of each grain
     std::vector<Row> rows;
+
+    void clear() {
+      found.clear();
+      ends.clear();
+    }
   };
 
   struct TouchingPlane {
