@@ -32,9 +32,12 @@ using spot::WindowedDrainage;
 
 constexpr double window = 0.01;
 
+/// Twice the time after which ranks look whether to share layers out anew.
+constexpr double time_to_balance = 2.0 * 64.0 * window;
+
 /// What WindowedDrainage sends, in the order in which a window begins with it.
-enum Kind { moves, shares, weights, migrants, border, reductions, kinds };
-constexpr const char* names[kinds] = {"moves", "shares", "weights", "migrants", "border", "reductions"};
+enum Kind { moves, shares, weights, balancing, migrants, border, reductions, kinds };
+constexpr const char* names[kinds] = {"moves", "shares", "weights", "balancing", "migrants", "border", "reductions"};
 
 /// Of this thread (s).
 double processor_time() {
@@ -48,7 +51,8 @@ struct Traffic {
 };
 
 /// Hands everything on to another communicator and counts it. In a window the first exchange is of moves and spots,
-/// then come those of shares and weights; every exchange of migrants is followed by one of borders.
+/// then come those of shares and weights, and, where layers are shared out anew, of all that is in them; every exchange
+/// of migrants is followed by one of borders.
 class Counting : public spot::Communicator {
  public:
   using spot::Communicator::sum;
@@ -59,22 +63,21 @@ class Counting : public spot::Communicator {
   const Traffic& of(int kind) const { return traffic_[static_cast<std::size_t>(kind)]; }
   /// Processor time of talking, of which threads have another than processes (s).
   double talk() const { return talk_; }
-  /// Between two windows.
   void begin() {
     traffic_ = {};
     talk_ = 0.0;
-    exchanges_ = neighbour_exchanges_ = 0;
   }
+  void begin_window() { exchanges_ = neighbour_exchanges_ = 0; }
 
   std::vector<Bytes> exchange(std::vector<Bytes> outgoing) override {
-    Traffic& kind = called(static_cast<Kind>(exchanges_++ % 3));
+    Traffic& kind = called(static_cast<Kind>(exchanges_++));
     for (std::size_t to = 0; to < outgoing.size(); ++to)
       if (static_cast<int>(to) != rank()) add(kind, outgoing[to]);
     return timed([&] { return other_->exchange(std::move(outgoing)); });
   }
 
   std::array<Bytes, 2> exchange_with_neighbours(std::array<Bytes, 2> outgoing) override {
-    Traffic& kind = called(neighbour_exchanges_++ % 2 == 0 ? migrants : border);
+    Traffic& kind = called(exchanges_ > balancing ? balancing : neighbour_exchanges_++ % 2 == 0 ? migrants : border);
     for (const Bytes& bytes : outgoing) add(kind, bytes);
     return timed([&] { return other_->exchange_with_neighbours(std::move(outgoing)); });
   }
@@ -125,13 +128,13 @@ spot::SpotParameters spot_parameters() {
   spots.step_height = SpotCommand::step_height_in_diameters(Accuracy::normal);
   spots.step_width = spot::step_width_for(1.35, spots.step_height);
   spots.speed = 3.0;
-  spots.injection_rate = 364.0;
+  spots.injection_rate = 368.0;
   spots.fixed_volume = 77.0;
   return spots;
 }
 
 std::shared_ptr<const spot::Container> silo() {
-  return spot::box_silo(-25.0, 25.0, -4.0, 4.0, {{0.0, 0.0, 0.0}, 4.0}, {0.5, 2.5});
+  return spot::box_silo(-25.0, 25.0, -4.0, 4.0, {{0.0, 0.0, 0.0}, 4.0}, {0.25, 2.0});
 }
 
 template <typename Start>
@@ -171,13 +174,21 @@ struct Report {
   std::int64_t grains, spots, shares_moved, moves, sweeps;
 };
 
-Report measure(const std::vector<Bytes>& saved, double to, std::shared_ptr<spot::Communicator> ranks) {
+/// Of the windows from `from` to `to`. Before them ranks have shared the layers out.
+Report measure(const std::vector<Bytes>& saved, double from, double to, std::shared_ptr<spot::Communicator> ranks) {
   const auto counting = std::make_shared<Counting>(std::move(ranks));
   WindowedDrainage draining = drainage(saved, counting);
+  const auto advance = [&](double first, double last) {
+    for (int k = 1; k <= std::lround((last - first) / window); ++k) {
+      counting->begin_window();
+      draining.advance_to(first + k * window);
+    }
+  };
+  advance(from - time_to_balance, from);
   const spot::Counters before = draining.counters();
   counting->begin();
   const double start = processor_time();
-  draining.advance_to(to);
+  advance(from, to);
   Report report = {};
   report.processor = processor_time() - start - counting->talk();
   for (int kind = 0; kind < kinds; ++kind) report.traffic[static_cast<std::size_t>(kind)] = counting->of(kind);
@@ -213,7 +224,7 @@ int main(int argc, char** argv) try {
   std::vector<Bytes> saved;
   {
     WindowedDrainage draining = drainage(read_grains(argv[1]), std::make_shared<spot::Alone>());
-    draining.advance_to(from);
+    draining.advance_to(from - time_to_balance);
     saved.push_back(draining.save());
   }
   std::printf("birth_us %.4g\n", 1e6 * birth_time());
@@ -224,7 +235,7 @@ int main(int argc, char** argv) try {
     std::vector<Report> reports(static_cast<std::size_t>(std::atoi(argv[k])));
     scenes::on_ranks(static_cast<int>(reports.size()), [&](std::shared_ptr<spot::Communicator> ranks) {
       const auto rank = static_cast<std::size_t>(ranks->rank());
-      reports[rank] = measure(saved, to, std::move(ranks));
+      reports[rank] = measure(saved, from, to, std::move(ranks));
     });
     print(reports, std::round((to - from) / window));
     std::fflush(stdout);

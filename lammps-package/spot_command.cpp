@@ -196,6 +196,7 @@ const std::map<std::string, Reader>& readers() {
        [](SpotCommand& c, Words& w) {
          c.spots.together = one_of<bool>(w, "steps", {{"poisson", false}, {"together", true}});
        }},
+      {"persistence", [](SpotCommand& c, Words& w) { c.spots.persistence = w.not_negative("the persistence"); }},
       {"threads", [](SpotCommand& c, Words& w) { c.threads = to_int(w.integer("the number of threads", 1)); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,
@@ -274,9 +275,10 @@ void SpotCommand::resolve(double diameter) {
   relaxation.momentum = *time_ordered ? 0.0 : momentum.value_or(chosen.momentum);
   if (spots.radius == 0.0) spots.radius = radius_in_diameters(spots.profile) * diameter;
   if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
-  spots.step_width = spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height);
-  side_buffer = side_buffer.value_or(0.5 * diameter);
-  base_buffer = base_buffer.value_or(2.5 * diameter);
+  spots.step_width =
+      spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height, spots.persistence);
+  side_buffer = side_buffer.value_or(0.25 * diameter);
+  base_buffer = base_buffer.value_or(2.0 * diameter);
   outlet = outlet.value_or(orifice->centre.z());
 }
 
@@ -301,6 +303,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"influence", precise(spots.influence)},
           {"dz", precise(spots.step_height)},
           {"diffusion", precise(spots.diffusion_length())},
+          {"persistence", precise(spots.persistence)},
           {"speed", precise(spots.speed)},
           {"injection", precise(spots.injection_rate)},
           {"volume", precise(spots.fixed_volume)},

@@ -54,8 +54,8 @@ struct SpotCommand {
 
   SpotCommand() { spots.profile = spot::InfluenceProfile::parabolic; }
 
-  /// Fills in what was left open: the radius that goes with the profile, diffusion length 1.25 d, buffers of 0.5 d from
-  /// side walls and 2.5 d from the base, outlet at the orifice, and what `accuracy` decides.
+  /// Fills in what was left open: the radius that goes with the profile, diffusion length 1.25 d, buffers of 0.25 d
+  /// from side walls and 2 d from the base, outlet at the orifice, and what `accuracy` decides.
   void resolve(double diameter);
 
   /// The parameters of an accuracy.

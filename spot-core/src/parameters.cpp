@@ -27,6 +27,8 @@ void SpotParameters::validate() const {
   require_positive("spot radius", radius);
   require_positive("spot influence", influence);
   if (influence >= 1.0) throw InvalidParameter(message("spot influence is ", influence, " but must be below 1"));
+  if (!(persistence >= 0.0 && persistence < 1.0))
+    throw InvalidParameter(message("spot persistence is ", persistence, " but must be from 0 to below 1"));
   require_positive("spot step width", step_width);
   require_positive("spot step height", step_height);
   require_positive("spot speed", speed);
@@ -35,10 +37,10 @@ void SpotParameters::validate() const {
     throw InvalidParameter(message("fixed volume is ", fixed_volume, " grains but must be zero (off) or positive"));
 }
 
-double step_width_for(double diffusion_length, double step_height) {
+double step_width_for(double diffusion_length, double step_height, double persistence) {
   require_positive("spot diffusion length", diffusion_length);
   require_positive("spot step height", step_height);
-  return std::sqrt(4.0 * diffusion_length * step_height);
+  return std::sqrt(4.0 * diffusion_length * step_height * (1.0 - persistence) / (1.0 + persistence));
 }
 
 void RelaxationParameters::validate() const {

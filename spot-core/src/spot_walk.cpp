@@ -14,7 +14,7 @@ std::array<double, 4> numbers_of_birth(const SpotParameters& p, std::int64_t id)
   return uniform(p.seed, RandomPurpose::birth, static_cast<std::uint64_t>(id), 0);
 }
 
-/// Numbers of the step to come: waiting time before it, and its direction.
+/// Numbers of the step to come: waiting time before it, its direction, a lot for others, and whether it turns at all.
 std::array<double, 4> numbers_of_step(const SpotParameters& p, const Spot& spot) {
   return uniform(p.seed, RandomPurpose::step, static_cast<std::uint64_t>(spot.id),
                  static_cast<std::uint64_t>(spot.steps));
@@ -58,7 +58,7 @@ Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) c
 
 void SpotWalk::draw_next_step(Spot& spot) const {
   const auto numbers = numbers_of_step(parameters_, spot);
-  spot.turn = numbers[1];
+  if (spot.steps == 0 || numbers[3] >= parameters_.persistence) spot.turn = numbers[1];
   spot.chance = numbers[2];
   const double mean = parameters_.mean_waiting_time();
   if (!parameters_.together)

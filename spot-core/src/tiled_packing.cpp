@@ -25,24 +25,6 @@ constexpr double skin_in_diameters = 0.5;
 /// Edges of a cell, as long as lists reach: in a dense packing it holds 3.7 grains, and nine hardly ever.
 constexpr std::array<double, 3> edges_in_diameters = {1.5, 1.5, 1.5};
 
-/// A grain in a saved state; its cell tells which turn of the wrapped coordinates is meant.
-struct SavedGrain {
-  std::int64_t id, cell;
-  Point point, reference, momentum;
-};
-
-struct SavedCell {
-  std::int64_t cell;
-  std::int32_t account, path;
-};
-
-/// What all parts of a saved state have in common.
-struct SavedGrid {
-  double diameter, extent, low[3];
-  std::int32_t cells[3];
-  std::int32_t ranks;
-};
-
 }  // namespace
 
 TiledPacking::TiledPacking(double diameter, double extent, std::shared_ptr<Communicator> communicator)
@@ -75,7 +57,7 @@ TiledPacking::TiledPacking(double diameter, double extent, double outlet, const 
   set_grid({box[0], box[1], box[2]}, {-box[3], -box[4], -box[5]});
   std::vector<std::int64_t> in_layer(static_cast<std::size_t>(n_[2]), 0);
   for (const Grain& grain : checked) ++in_layer[static_cast<std::size_t>(layer(grain.position.z()))];
-  set_slabs(communicator_->sum(in_layer));
+  set_slabs(Slabs(communicator_->sum(in_layer), communicator_->size()));
   for (const Grain& grain : take_own(checked)) {
     const Vector3 at = grain.position - low_;
     Point point = wrapped(at);
@@ -84,73 +66,6 @@ TiledPacking::TiledPacking(double diameter, double extent, double outlet, const 
     occupy(slot(place), grain.id, point, point);
   }
   list_all(container);
-}
-
-TiledPacking::TiledPacking(double diameter, double extent, const std::vector<Bytes>& saved, const Container& container,
-                           std::shared_ptr<Communicator> communicator)
-    : TiledPacking(diameter, extent, std::move(communicator)) {
-  std::vector<SavedGrain> grains;
-  std::vector<SavedCell> cells;
-  for (const Bytes& part : saved) {
-    ByteReader reader(part);
-    const auto grid = reader.take<SavedGrid>();
-    if (grid.diameter != diameter || grid.extent != extent)
-      throw InvalidState(message("the saved state has grains of diameter ", grid.diameter, " in a box that reaches to ",
-                                 grid.extent, ", not ", diameter, " and ", extent));
-    if (static_cast<std::size_t>(grid.ranks) != saved.size())
-      throw InvalidState(message("the saved state has ", saved.size(), " parts, not ", grid.ranks));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low_[static_cast<Eigen::Index>(axis)] = grid.low[axis];
-      n_[axis] = grid.cells[axis];
-    }
-    for (const SavedGrain& grain : reader.take_all<SavedGrain>()) grains.push_back(grain);
-    for (const SavedCell& cell : reader.take_all<SavedCell>()) cells.push_back(cell);
-  }
-  const std::int64_t all_cells = static_cast<std::int64_t>(cells_in_layer()) * n_[2];
-  const auto layer_of = [&](const auto& saved_thing) {
-    if (saved_thing.cell < 0 || saved_thing.cell >= all_cells)
-      throw InvalidState(message("the saved state has cell ", saved_thing.cell, " of ", all_cells));
-    return static_cast<int>(saved_thing.cell / cells_in_layer());
-  };
-  std::vector<std::int64_t> in_layer(static_cast<std::size_t>(n_[2]), 0);
-  for (const SavedGrain& grain : grains) ++in_layer[static_cast<std::size_t>(layer_of(grain))];
-  set_slabs(in_layer);
-  const std::int64_t before = static_cast<std::int64_t>(first_layer_) * cells_in_layer();
-  const auto is_own = [&](const auto& saved_thing) {
-    return slabs_.owner(layer_of(saved_thing)) == communicator_->rank();
-  };
-  for (const SavedGrain& grain : grains) {
-    if (!is_own(grain)) continue;
-    const std::uint32_t at = slot(ensure_room(static_cast<std::uint32_t>(grain.cell - before)));
-    occupy(at, grain.id, grain.point, grain.reference);
-    momenta_[at] = grain.momentum;
-  }
-  for (const SavedCell& cell : cells) {
-    if (!is_own(cell)) continue;
-    account_[static_cast<std::size_t>(cell.cell - before)] = cell.account;
-    path_[static_cast<std::size_t>(cell.cell - before)] = cell.path;
-  }
-  list_all(container);
-}
-
-Bytes TiledPacking::save() const {
-  Bytes bytes;
-  append(bytes, SavedGrid{diameter_,
-                          extent_,
-                          {low_.x(), low_.y(), low_.z()},
-                          {n_[0], n_[1], n_[2]},
-                          static_cast<std::int32_t>(communicator_->size())});
-  const std::int64_t before = static_cast<std::int64_t>(first_layer_) * cells_in_layer();
-  std::vector<SavedGrain> grains;
-  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot)
-    if (ids_[slot] >= 0)
-      grains.push_back({ids_[slot], before + slot / capacity_, points_[slot], references_[slot], momenta_[slot]});
-  append(bytes, grains);
-  std::vector<SavedCell> cells;
-  for (std::uint32_t cell = first_owned(); cell < last_owned(); ++cell)
-    if (account_[cell] != 0 || path_[cell] != 0) cells.push_back({before + cell, account_[cell], path_[cell]});
-  append(bytes, cells);
-  return bytes;
 }
 
 // ---- the grid
@@ -175,9 +90,9 @@ void TiledPacking::set_grid(const Vector3& low, const Vector3& high) {
   }
 }
 
-/// Shares the layers out, and makes room for those of this rank.
-void TiledPacking::set_slabs(const std::vector<std::int64_t>& grains_in_layer) {
-  slabs_ = Slabs(grains_in_layer, communicator_->size());
+/// Makes room for this rank's layers, which are empty.
+void TiledPacking::set_slabs(const Slabs& slabs) {
+  slabs_ = slabs;
   const int first = slabs_.first(communicator_->rank()), layers = rank_layers();
   border_ = {layers > 0 && first > 0 ? 1 : 0, layers > 0 && first + layers < n_[2] ? 1 : 0};
   first_layer_ = first - border_[0];
@@ -197,6 +112,10 @@ void TiledPacking::set_slabs(const std::vector<std::int64_t>& grains_in_layer) {
   lists_.assign(slots * list_capacity_, 0);
   list_size_.assign(slots, 0);
   marks_.assign(slots, 0);
+  work_.assign(static_cast<std::size_t>(layers), 0);
+  cells_reached_.assign(static_cast<std::size_t>(layers), 1);
+  changed_ = {};
+  size_ = 0;
 }
 
 /// Of the grains that all ranks bring together, those in this rank's layers.
@@ -387,7 +306,7 @@ void TiledPacking::find_larger_overlap(std::uint32_t slot, double& least, Overla
 
 std::size_t TiledPacking::memory() const {
   std::size_t bytes = bytes_in(points_, references_, momenta_, ids_, near_wall_, cell_near_wall_, lists_, list_size_,
-                               marks_, account_, path_, middles_, steps_, shares_, received_, wandered_cells_,
+                               marks_, account_, path_, work_, middles_, steps_, shares_, received_, wandered_cells_,
                                due_cells_, wandered_, findings_, parts_, cells_reached_);
   for (const Part& part : parts_) bytes += bytes_in(part.rows, part.end_of_rows, part.shares);
   for (const Finding& finding : findings_) bytes += bytes_in(finding.found, finding.ends, finding.rows);

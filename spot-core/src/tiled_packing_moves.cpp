@@ -64,7 +64,6 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
 /// Shares this rank's layers out among the workers, by how many cells the moves of the last window reached in each:
 /// most grains then stay with the same processor, whose memory is near.
 void TiledPacking::set_parts(int workers) {
-  cells_reached_.resize(static_cast<std::size_t>(rank_layers()), 1);
   const Slabs slabs(cells_reached_, workers);
   parts_.resize(static_cast<std::size_t>(workers));
   for (int worker = 0; worker < workers; ++worker) {
@@ -83,6 +82,7 @@ void TiledPacking::find_moves(const std::vector<Move>& moves, const SpotParamete
   for (const Move& move : moves) middles_.push_back(wrapped(move.middle - low_));
   set_parts(workers.size());
   workers.run([&](int worker) { find_moves(parts_[static_cast<std::size_t>(worker)], moves, spots.radius); });
+  for (std::size_t layer = 0; layer < work_.size(); ++layer) work_[layer] += cells_reached_[layer];
   shares_.assign(moves.size(), 0);
   for (const Part& part : parts_)
     for (std::size_t m = 0; m < moves.size(); ++m) shares_[m] += part.shares[m];

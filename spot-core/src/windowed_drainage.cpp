@@ -21,6 +21,9 @@ constexpr double deepest_overlap = 0.02;
 /// Windows after which all grains are looked at for overlaps, which costs less than 1 % of the run time.
 constexpr std::int64_t windows_between_looks = 512;
 
+/// Windows after which ranks see whether layers should be shared out anew. Their spots follow in the next window.
+constexpr std::int64_t windows_between_balances = 64;
+
 /// In a window spots climb no farther than this, in diameters: coordinates wrap around after 256 of them. And no less
 /// than this, or time hardly goes on.
 constexpr double highest_climb = 64.0, least_climb = 1e-6;
@@ -109,6 +112,7 @@ void WindowedDrainage::advance_to(double time) {
     packing_.take_out_below(limits_.outlet, drained_);
     counters_.drained += static_cast<std::int64_t>(drained_.size() - drained_before);
     require_left_through_orifice(drained_before);
+    if (communicator_->size() > 1 && windows_ % windows_between_balances == 0) packing_.balance(container());
   }
 }
 

@@ -50,7 +50,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   const SpotCommand c = parse(
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
-      "accuracy fast momentum 0.3 volume 77.5 steps together threads 4 peratom yes");
+      "accuracy fast momentum 0.3 volume 77.5 persistence 0.4 steps together threads 4 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -59,6 +59,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.spots.influence, 1e-3);
   EXPECT_EQ(c.diffusion_length, 1.5);
   EXPECT_EQ(c.spots.step_height, 0.2);
+  EXPECT_EQ(c.spots.persistence, 0.4);
   EXPECT_EQ(c.spots.speed, 2.0);
   EXPECT_EQ(c.spots.injection_rate, 300.0);
   EXPECT_EQ(c.spots.seed, 17U);
@@ -262,25 +263,64 @@ TEST(SpotCommand, OnlyThreadsMayBeModified) {
 
 /// Random commands: either they are read, and then what was read is in range, or the error is InvalidParameter.
 TEST(SpotCommand, RandomWordsGiveNoOtherError) {
-  const std::vector<std::string> vocabulary = {"box",       "cylinder", "region",
-                                               "orifice",   "radius",   "influence",
-                                               "diffusion", "dz",       "speed",
-                                               "injection", "seed",     "outlet",
-                                               "buffer",    "window",   "relax",
-                                               "strength",  "alpha",    "shell",
-                                               "every",     "never",    "half",
-                                               "full",      "1",        "-1",
-                                               "0",         "2.5",      "1e308",
-                                               "-0",        "nan",      "inf",
-                                               "1e-320",    "overlap",  "average",
-                                               "",          " ",        "\xff\xfe",
-                                               "%s",        "+",        "18446744073709551616",
-                                               "accuracy",  "fast",     "normal",
-                                               "exact",     "momentum", "volume",
-                                               "steps",     "poisson",  "together",
-                                               "threads",   "tol",      "chance",
-                                               "spot",      "global",   "silo",
-                                               "peratom",   "yes",      "no"};
+  const std::vector<std::string> vocabulary = {"box",
+                                               "cylinder",
+                                               "region",
+                                               "orifice",
+                                               "radius",
+                                               "influence",
+                                               "diffusion",
+                                               "dz",
+                                               "speed",
+                                               "injection",
+                                               "seed",
+                                               "outlet",
+                                               "buffer",
+                                               "window",
+                                               "relax",
+                                               "strength",
+                                               "alpha",
+                                               "shell",
+                                               "every",
+                                               "never",
+                                               "half",
+                                               "full",
+                                               "1",
+                                               "-1",
+                                               "0",
+                                               "2.5",
+                                               "1e308",
+                                               "-0",
+                                               "nan",
+                                               "inf",
+                                               "1e-320",
+                                               "overlap",
+                                               "average",
+                                               "",
+                                               " ",
+                                               "\xff\xfe",
+                                               "%s",
+                                               "+",
+                                               "18446744073709551616",
+                                               "accuracy",
+                                               "fast",
+                                               "normal",
+                                               "exact",
+                                               "momentum",
+                                               "volume",
+                                               "steps",
+                                               "poisson",
+                                               "together",
+                                               "persistence",
+                                               "threads",
+                                               "tol",
+                                               "chance",
+                                               "spot",
+                                               "global",
+                                               "silo",
+                                               "peratom",
+                                               "yes",
+                                               "no"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -382,6 +422,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"diffusion", in(c.spots.diffusion_length() / d, " d")},
       {"seed", std::to_string(c.spots.seed)},
       {"volume", in(c.spots.fixed_volume, "")},
+      {"persistence", in(c.spots.persistence, "")},
       {"steps", c.spots.together ? "together" : "poisson"},
       {"threads", std::to_string(c.threads)},
       {"outlet", *c.outlet == c.orifice->centre.z() ? "the height of the orifice" : "elsewhere"},

@@ -60,6 +60,7 @@ def test_missing_keyword(tmp_path, keyword):
     ("relax spot 0", ["'0' after keyword 'relax'", "1 or more"]),
     ("relax tol -1", ["'relax' is -1", "must be positive"]),
     ("accuracy high", ["'accuracy high' is not known", "'exact' or 'fast' or 'normal'"]),
+    ("persistence 1", ["persistence is 1 ", "below 1"]),
     ("steps apart", ["'steps apart' is not known", "'poisson' or 'together'"]),
     ("momentum -1", ["'momentum' is -1", "zero or positive"]),
     ("momentum 1", ["momentum is 1 ", "below 1"]),

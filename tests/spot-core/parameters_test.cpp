@@ -66,6 +66,16 @@ TEST(ParametersUnit, InfluenceMustBeBelowOne) {
   EXPECT_NO_THROW(spots.validate());
 }
 
+TEST(ParametersUnit, PersistenceMustBeBelowOne) {
+  SpotParameters spots = scenes::paper_spots();
+  for (const double wrong : {-0.1, 1.0, 1.0 / 0.0, std::nan("")}) {
+    spots.persistence = wrong;
+    spots.step_width = spot::step_width_for(1.0, 0.1, wrong);
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }),
+                AllOf(HasSubstr("persistence"), HasSubstr("from 0 to below 1")));
+  }
+}
+
 TEST(ParametersUnit, DiffusionLengthOf2006) {
   SpotParameters spots = scenes::paper_spots();
   EXPECT_NEAR(spots.diffusion_length(), 1.156, 1e-12);
@@ -80,6 +90,11 @@ TEST(ParametersUnit, StepWidthInvertsTheDiffusionLength) {
     spots.step_width = spot::step_width_for(1.156, height);
     EXPECT_NEAR(spots.diffusion_length(), 1.156, 1e-14);
   }
+  SpotParameters persistent = scenes::paper_spots();
+  persistent.persistence = 0.6;
+  persistent.step_width = spot::step_width_for(1.156, persistent.step_height, persistent.persistence);
+  EXPECT_NEAR(persistent.step_width, 0.34, 1e-12);
+  EXPECT_NEAR(persistent.diffusion_length(), 1.156, 1e-14);
   EXPECT_NEAR(spot::step_width_for(1.156, 0.1), 0.68, 1e-12);
   EXPECT_THAT(scenes::text_of<InvalidParameter>([] { spot::step_width_for(-1.0, 0.1); }),
               AllOf(HasSubstr("diffusion length"), HasSubstr("positive")));

@@ -151,6 +151,59 @@ TEST_P(RanksInvariance, GoOnFromAStateThatOthersHaveSaved) {
   }
 }
 
+/// Of moves and sweeps low in the packing, in which the last of the ranks has no part until layers are shared out anew.
+TEST(BalanceInvariance, LayersGoWhereTheWorkIsAndNothingElseChanges) {
+  constexpr double low = 6.0;
+  const auto silo = scenes::small_silo(6.0, 4.0);
+  const auto start = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 40.0}, 0.01, 3);
+  scenes::Draws draws(5);
+  std::vector<std::vector<spot::Move>> rounds(40);
+  for (std::size_t round = 0; round < rounds.size(); ++round)
+    for (int k = 0; k < 20; ++k) {
+      spot::Move move{};
+      move.spot = static_cast<std::int64_t>(20 * round) + k;
+      move.middle = draws.in_box({-4, -3, 2}, {4, 3, low});
+      move.step = draws.in_box({-7, -7, 0}, {7, 7, 7});
+      rounds[round].push_back(move);
+    }
+  // What each rank has in the end, and the highest of its grains.
+  const auto work = [&](int ranks, bool balance, std::vector<double>& tops) {
+    std::map<std::int64_t, Grain> grains;
+    std::mutex mutex;
+    int changes = 0;
+    scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
+      spot::TiledPacking packing(1.0, 100.0, -1.0, communicator->rank() == 0 ? start : std::vector<Grain>{}, *silo,
+                                 communicator);
+      spot::Workers workers(1);
+      for (std::size_t round = 0; round < rounds.size(); ++round) {
+        std::vector<spot::Move> moves = rounds[round];
+        packing.displace(
+            moves, {2.6, 5e-3}, [](const auto&, auto&) {}, *silo, workers);
+        packing.sweep({}, 2, 0.02, *silo, workers);
+        if (balance && round % 10 == 9 && packing.balance(*silo) && communicator->rank() == 0) ++changes;
+      }
+      double top = 0.0;
+      const std::lock_guard<std::mutex> lock(mutex);
+      packing.visit_grains([&](const Grain& grain) {
+        EXPECT_TRUE(grains.emplace(grain.id, grain).second) << "on two ranks: " << grain.id;
+        top = std::max(top, grain.position.z());
+      });
+      tops[static_cast<std::size_t>(communicator->rank())] = top;
+    });
+    EXPECT_EQ(changes > 0, balance);
+    return grains;
+  };
+  std::vector<double> alone(1), unbalanced(3), balanced(3);
+  const auto expected = work(1, false, alone);
+  ASSERT_EQ(expected.size(), start.size());
+  EXPECT_EQ(work(3, false, unbalanced), expected);
+  EXPECT_EQ(work(3, true, balanced), expected);
+  EXPECT_GT(unbalanced[0], low + 3.0);
+  EXPECT_LT(balanced[0], low);
+  // The last rank takes grains off the others' hands, but no more than one and a half times what they have of the work.
+  EXPECT_GT(balanced[1], 0.25 * 40.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Numbers, RanksInvariance, testing::Values(1, 2, 3, 4, 6, 11, 14));
 
 TEST(SavedStateUnit, DamageIsNamed) {
@@ -212,6 +265,38 @@ TEST(SlabsUnit, EveryRankHasALayerWhileThereAreEnough) {
         for (int layer = slabs.first(rank); layer < slabs.first(rank + 1); ++layer) EXPECT_EQ(slabs.owner(layer), rank);
       }
     }
+}
+
+/// Slabs of random layers against all ways to cut them.
+TEST(SlabsBruteForce, TheLargestPartIsTheLeastPossible) {
+  scenes::Draws draws(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::size_t layers = 3 + draws.below(7);
+    Slabs::Load work, grains;
+    grains.slack = 1.5;
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+      work.in_layer.push_back(static_cast<std::int64_t>(draws.below(100)));
+      grains.in_layer.push_back(static_cast<std::int64_t>(draws.below(50)));
+    }
+    const auto part = [](const Slabs::Load& load, std::size_t first, std::size_t last) {
+      double all = 0.0, sum = 0.0;
+      for (std::size_t layer = 0; layer < load.in_layer.size(); ++layer) {
+        all += static_cast<double>(load.in_layer[layer]);
+        if (layer >= first && layer < last) sum += static_cast<double>(load.in_layer[layer]);
+      }
+      return all > 0.0 ? sum / (load.slack * all) : 0.0;
+    };
+    double least = 1.0;
+    for (std::size_t a = 1; a + 1 < layers; ++a)
+      for (std::size_t b = a + 1; b < layers; ++b) {
+        double largest = 0.0;
+        for (const auto& load : {work, grains})
+          largest = std::max({largest, part(load, 0, a), part(load, a, b), part(load, b, layers)});
+        least = std::min(least, largest);
+      }
+    const Slabs slabs(std::vector<Slabs::Load>{work, grains}, 3);
+    EXPECT_NEAR(slabs.largest_part({work, grains}), least, 1e-8) << "trial " << trial;
+  }
 }
 
 }  // namespace

@@ -307,6 +307,29 @@ TEST(SpotPopulationStatistical, FreeSpotsDiffuse) {
   EXPECT_LT(std::abs(xy / number / variance) * std::sqrt(number), bound);
 }
 
+/// Successive steps go the same way with the chance p, or else any way: Var(x) grows to (1 + p) / (1 - p) of a free
+/// walk's.
+TEST(SpotPopulationStatistical, PersistentSpotsDiffuse) {
+  const auto space = space_above_orifice();
+  SpotParameters parameters = scenes::paper_spots();
+  const double p = parameters.persistence = 0.7;
+  const int number = 4000, steps = 64;
+  std::map<std::int64_t, Vector3> birth, last;
+  double xx = 0.0, same = 0.0;
+  walk(parameters, *space, number, steps, [&](const Move& move, int n) {
+    if (n == 1) birth[move.spot] = start_of(move);
+    if (n > 1 && (move.step - last[move.spot]).norm() < 1e-9) ++same;
+    last[move.spot] = move.step;
+    if (n == steps) xx += std::pow(end_of(move).x() - birth[move.spot].x(), 2);
+  });
+  const double pairs = static_cast<double>(number) * (steps - 1), chance = p + (1.0 - p) / 4.0;
+  EXPECT_LT(std::abs(same / pairs - chance) / std::sqrt(chance * (1.0 - chance) / pairs), bound) << same / pairs;
+  // What the first steps lack of the sum over all correlations.
+  const double start = 2.0 * p * (1.0 - std::pow(p, steps)) / (steps * (1.0 - p) * (1.0 - p)) / ((1.0 + p) / (1.0 - p));
+  const double variance = 2.0 * parameters.diffusion_length() * steps * parameters.step_height * (1.0 - start);
+  EXPECT_LT(std::abs(xx / number / variance - 1.0) / std::sqrt(2.0 / number), bound) << xx / number / variance;
+}
+
 /// Part of the sphere of radius R around a spot that lies between plane walls at y = +-wall.
 double uncut_part(double y, double wall, double radius) {
   double cut = 0.0;

@@ -26,6 +26,8 @@ struct SpotParameters {
   /// 0: every grain it encloses moves by -w dr (2006).
   double fixed_volume = 0.0;
   InfluenceProfile profile = InfluenceProfile::uniform;
+  /// p: the chance that a step goes the way of the last one, without drawing (2006, section V: a persistent walk).
+  double persistence = 0.0;
   bool together = false;  ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
   std::uint64_t seed = 1;
 
@@ -33,9 +35,11 @@ struct SpotParameters {
   double move_rate() const { return speed / step_height; }
   /// dz / v_s
   double mean_waiting_time() const { return step_height / speed; }
-  /// b_s = Var(x) / (2 z) of the walk. Half of the steps go along x, so Var(dx) = dx^2 / 2 a step and
-  /// b_s = dx^2 / (4 dz) (length).
-  double diffusion_length() const { return step_width * step_width / (4.0 * step_height); }
+  /// b_s = Var(x) / (2 z) of the walk. Half of the steps go along x, so Var(dx) = dx^2 / 2 a step; steps that are k
+  /// apart have a correlation of p^k, which adds up to b_s = dx^2 / (4 dz) (1 + p) / (1 - p) (length).
+  double diffusion_length() const {
+    return step_width * step_width / (4.0 * step_height) * (1.0 + persistence) / (1.0 - persistence);
+  }
   /// The share of a grain anywhere within R_s, on average.
   double mean_share() const { return profile == InfluenceProfile::uniform ? 1.0 : 0.4; }
   /// Of two grains in touch anywhere within R_s, the mean square of the difference of their shares: 1/4 if one of them
@@ -52,8 +56,8 @@ struct SpotParameters {
   void validate() const;
 };
 
-/// dx that gives a diffusion length b_s with steps of height dz: dx = sqrt(4 b_s dz).
-double step_width_for(double diffusion_length, double step_height);
+/// dx that gives a diffusion length b_s with steps of height dz and persistence p: dx^2 = 4 b_s dz (1 - p) / (1 + p).
+double step_width_for(double diffusion_length, double step_height, double persistence = 0.0);
 
 /// Strength of the correction of two overlapping grains that both may move.
 enum class RelaxationStrength {

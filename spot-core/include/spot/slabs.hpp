@@ -10,9 +10,19 @@ namespace spot {
 /// where slabs begin.
 class Slabs {
  public:
-  /// Slabs with about as many grains each. Every rank owns a layer at least; if there are fewer layers than ranks, the
-  /// last ranks own none.
-  Slabs(const std::vector<std::int64_t>& grains_in_layer, int ranks);
+  /// Something that layers have more or less of, and that is to be shared out.
+  struct Load {
+    std::vector<std::int64_t> in_layer;
+    double slack = 1.0;  // times an even part of it is as bad as an even part of a load with slack 1
+  };
+
+  /// Slabs whose largest part of any load, over its slack, is as small as it can be. Every rank owns a layer at least;
+  /// if there are fewer layers than ranks, the last ranks own none.
+  Slabs(const std::vector<Load>& loads, int ranks);
+  Slabs(const std::vector<std::int64_t>& in_layer, int ranks) : Slabs(std::vector<Load>{{in_layer}}, ranks) {}
+
+  /// The largest part of any load that a slab has, over its slack.
+  double largest_part(const std::vector<Load>& loads) const;
 
   /// The layers of a rank: from first(rank) to first(rank + 1), exclusive.
   int first(int rank) const { return first_[static_cast<std::size_t>(rank)]; }

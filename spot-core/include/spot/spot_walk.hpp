@@ -19,7 +19,7 @@ struct Spot {
   double chance = 0.0;  ///< another, for whoever draws lots
 };
 
-/// How spots are born and walk. Walks do not look at grains, and there is no state: all follows from
+/// How spots are born and walk. Walks do not look at grains, and there is no state but the spot: all draws follow from
 /// (seed, spot id, step number).
 ///
 /// A spot is born uniformly on the disc of the orifice's radius less R_s, and R_s below the orifice: it

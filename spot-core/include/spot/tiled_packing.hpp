@@ -75,6 +75,10 @@ class TiledPacking {
   /// What is needed to go on from here, apart from walls: the part of this rank.
   Bytes save() const;
 
+  /// Collective. Shares the layers out anew, by what was done in each of them since that was done last, if that makes
+  /// the part of the busiest rank smaller by more than it costs. Returns whether it has.
+  bool balance(const Container& container);
+
   /// Calls visit(grain) for all grains of this rank, in no particular order.
   void visit_grains(const std::function<void(const Grain&)>& visit) const;
 
@@ -171,6 +175,9 @@ class TiledPacking {
     std::uint32_t cell, in_cell;
   };
 
+  struct SavedGrain;
+  struct SavedCell;
+
   TiledPacking(double diameter, double extent, std::shared_ptr<Communicator> communicator);
 
   // Places. "From low": in deck units, from the lowest corner of the grid.
@@ -194,11 +201,14 @@ class TiledPacking {
   std::uint32_t last_owned() const {
     return first_owned() + static_cast<std::uint32_t>(rank_layers()) * cells_in_layer();
   }
+  std::uint32_t first_cell_of(int layer) const {
+    return static_cast<std::uint32_t>(layer - first_layer_) * cells_in_layer();
+  }
   bool owned(std::uint32_t cell) const { return cell >= first_owned() && cell < last_owned(); }
 
   void set_edges();
   void set_grid(const Vector3& low, const Vector3& high);
-  void set_slabs(const std::vector<std::int64_t>& grains_in_layer);
+  void set_slabs(const Slabs& slabs);
   std::vector<Grain> take_own(const std::vector<Grain>& grains) const;
   Place ensure_room(std::uint32_t cell);
   std::uint32_t slot(const Place& place) const { return place.cell * capacity_ + place.in_cell; }
@@ -234,6 +244,12 @@ class TiledPacking {
   template <typename Visit>
   void visit_layer(std::uint32_t first_cell, const Visit& visit) const;
   std::uint32_t first_of_border(int side, bool own) const;
+
+  // What goes elsewhere.
+  void save_layers(int first, int last, Bytes& bytes) const;
+  void take_saved(ByteReader& reader, std::vector<SavedGrain>& grains, std::vector<SavedCell>& cells) const;
+  void fill(const std::vector<SavedGrain>& grains, const std::vector<SavedCell>& cells, const Container& container);
+  std::vector<std::int64_t> grains_in_layers() const;
 
   // Moves.
   double reach_of_move(double radius) const;
@@ -273,7 +289,7 @@ class TiledPacking {
   double overlap_swept_ = 0.0;
 
   std::shared_ptr<Communicator> communicator_;
-  Slabs slabs_{{0}, 1};
+  Slabs slabs_{std::vector<std::int64_t>{0}, 1};
   std::array<int, 2> border_ = {0, 0};         // layers held of the ranks below and above: 0 or 1
   int first_layer_ = 0;                        // of those held
   std::array<std::vector<Place>, 2> changed_;  // what has come, gone or been listed anew where others hold copies
@@ -290,6 +306,8 @@ class TiledPacking {
   std::vector<std::uint8_t> marks_;    // of slots, zero between uses
   std::vector<std::int32_t> account_;  // in parts of a move
   std::vector<std::int32_t> path_;     // of each cell: no grain in it is farther from its reference, in quanta
+
+  std::vector<std::int64_t> work_;  // in each layer of this rank, in cells reached by moves, since balance()
 
   // Kept between calls to save allocations.
   std::vector<Part> parts_;                  // one for each worker
