@@ -30,10 +30,10 @@ namespace {
 using spot::Bytes;
 using spot::WindowedDrainage;
 
-constexpr double window = 0.01;
+constexpr double window = 0.1;
 
 /// Twice the time after which ranks look whether to share layers out anew.
-constexpr double time_to_balance = 2.0 * 64.0 * window;
+constexpr double time_to_balance = 2.0 * 16.0 * window;
 
 /// What WindowedDrainage sends, in the order in which a window begins with it.
 enum Kind { moves, shares, weights, balancing, migrants, border, reductions, kinds };

@@ -19,10 +19,10 @@ constexpr int most_sweeps = 16;
 constexpr double deepest_overlap = 0.02;
 
 /// Windows after which all grains are looked at for overlaps, which costs less than 1 % of the run time.
-constexpr std::int64_t windows_between_looks = 512;
+constexpr std::int64_t windows_between_looks = 64;
 
 /// Windows after which ranks see whether layers should be shared out anew. Their spots follow in the next window.
-constexpr std::int64_t windows_between_balances = 64;
+constexpr std::int64_t windows_between_balances = 16;
 
 /// In a window spots climb no farther than this, in diameters: coordinates wrap around after 256 of them. And no less
 /// than this, or time hardly goes on.
@@ -35,8 +35,10 @@ constexpr double most_steps = 1e6, most_births = 1e7;
 /// base before they are relaxed.
 constexpr double longest_flow = 1.0;
 
-/// Diameters that grains pass through the orifice in this time.
-double flow_through_orifice(const SpotParameters& spots, double time, double diameter, double orifice_radius) {
+}  // namespace
+
+double WindowedDrainage::flow_through_orifice(const SpotParameters& spots, double time, double diameter,
+                                              double orifice_radius) {
   constexpr double packing_fraction = 0.58;
   const double radii = spots.equivalent_radius() / diameter, orifice = orifice_radius / diameter;
   const double enclosed =
@@ -45,8 +47,6 @@ double flow_through_orifice(const SpotParameters& spots, double time, double dia
   // A grain takes pi / 6 d^3; what passes is a cylinder as wide as the orifice.
   return grains / (6.0 * packing_fraction * orifice * orifice);
 }
-
-}  // namespace
 
 void WindowedDrainage::require_fitting_window() const {
   // Spots that step together carry out in one window what others do in all of the time between steps.

@@ -89,7 +89,7 @@ def test_spots_in_dump_local(drained):
         assert len(identity) == log[SPOTS][k]
         assert (np.diff(identity) > 0).all()
         assert (steps == steps.round()).all() and (steps >= 0).all()
-        assert (abs(x) <= HALF_WIDTH - 0.5 + 1e-9).all() and (abs(y) <= HALF_DEPTH - 0.5 + 1e-9).all()
+        assert (abs(x) <= HALF_WIDTH - 0.25 + 1e-9).all() and (abs(y) <= HALF_DEPTH - 0.25 + 1e-9).all()
         assert z == pytest.approx(-3.53 + 0.4 * steps)  # births R_s below the orifice, steps of 0.4 d
     # Poisson: 100 births a time; the last spot ever born has the largest id.
     born = spots[-1][1]["f_drain[1]"].max() + 1

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from lammps_runs import DISTRIBUTION, FIX, ROOT, deck, drain, lattice, needs_distribution, read_dump, run, run_ok, thermo, write_data
+from lammps_runs import DISTRIBUTION, FIX, ORIFICE, ROOT, deck, drain, lattice, needs_distribution, read_dump, run, run_ok, thermo, write_data
 
 WINDOWED = FIX + " window 0.005 volume 77"  # and all that accuracy normal, the default, chooses
 FAST = FIX + " window 0.02 influence 2e-2"  # few rounds of work for threads, which wait for cores that others use
@@ -91,14 +91,21 @@ def test_unknown_instruction_set(tmp_path):
     assert "SPOT_INSTRUCTION_SET is 'mmx'" in done.stdout + done.stderr
 
 
-def test_default_window_is_a_fraction_of_the_timestep(tmp_path):
-    """The longest one in which spots climb no more than the documentation says."""
-    text = (ROOT / "lammps-package" / "doc" / "fix_spot.rst").read_text()
-    climb = float(re.search(r"spots climb no more than ([\d.]+) grain diameters", text)[1])
-    windows = math.ceil(0.1 * 3.2 / climb - 1e-9)
-    default = drain(tmp_path / "default", fix=FIX)
-    assert drain(tmp_path / "given", fix=f"{FIX} window {0.1 / windows:.17g}") == default
-    assert drain(tmp_path / "longer", fix=f"{FIX} window {0.1 / (windows - 1):.17g}") != default
+@pytest.mark.parametrize("rate, windows", [(100, 5), (10, 3)])  # the flow decides, then the climb
+def test_default_window_is_a_fraction_of_the_timestep(tmp_path, rate, windows):
+    """The longest one in which spots climb and grains flow no more than the documentation says."""
+    text = " ".join((ROOT / "lammps-package" / "doc" / "fix_spot.rst").read_text().split())
+    said = re.search(r"spots climb no more than ([\d.]+) grain diameters and the grains over the orifice go down by no more than "
+                     r"([\d.]+) of them", text)
+    climb, flow = (float(number) for number in said.groups())
+    timestep, enclosed = 0.25, 0.58 * 8 * 0.4 * 3.53**3
+    grains = timestep * rate * 1e-2 * enclosed  # of which pi/6 d^3 each go through the orifice
+    longest = max(timestep * 3.2 / climb, grains / (6 * 0.58 * ORIFICE**2) / flow)
+    assert math.ceil(longest - 1e-9) == windows
+    fix = FIX.replace("injection 100", f"injection {rate}")
+    default = drain(tmp_path / "default", fix=fix, timestep=timestep)
+    assert drain(tmp_path / "given", fix=f"{fix} window {timestep / windows:.17g}", timestep=timestep) == default
+    assert drain(tmp_path / "longer", fix=f"{fix} window {timestep / (windows - 1):.17g}", timestep=timestep) != default
 
 
 @pytest.mark.parametrize("words", ["accuracy fast", "accuracy exact", "volume 0", "volume 70", "steps together", "momentum 0",
