@@ -27,7 +27,7 @@ def parse_arguments():
                         help="LAMMPS variables, for 'lmp -in in.silo_spot -var parameters FILE'")
     parser.add_argument("--json", metavar="FILE", help="parameters, all that was measured, and errors")
     parser.add_argument("--plots", metavar="FOLDER", help="a picture of every fit")
-    parser.add_argument("--buffer", type=float, default=1.0, metavar="D",
+    parser.add_argument("--buffer", type=float, default=0.25, metavar="D",
                         help="distance that spot centres keep from side walls, fix spot's 'buffer' (default: %(default)s d)")
     parser.add_argument("--response", choices=sorted(calibration_response.STORED), default="windowed",
                         help="what is taken for the difference between what spots do and what grains show: that of fix "
@@ -47,17 +47,18 @@ def main():
     run = command_line.open_run(options.dumps, options, "", "calibrate", calibration_view.CONCEPTS)
     measured = calibration.measure(run, options.start, options.end, options.buffer)
     response = calibration_response.stored_response(options.response)
+    profile = calibration_response.PROFILES.get(options.response, "uniform")
     uncorrected = calibration.parameters(measured, calibration_response.stored_response("2006"))
     result = calibration.parameters(measured, response)
     if options.refine > 0:
         result, response = calibration_refinement.refine(
             measured, response, options.refine, options.deck, options.lmp, options.refine_time, options.fix,
-            command_line.print_warning)
+            command_line.print_warning, profile=profile)
     span = measured.view.interval.span
     print(f"{span[0]:g} to {span[1]:g} tau, {len(measured.view.snapshots)} snapshots\n")
     print(calibration_output.table(result, uncorrected))
     if options.output:
-        write(options.output, calibration_output.lammps_variables(result, options.dumps, span))
+        write(options.output, calibration_output.lammps_variables(result, options.dumps, span, profile))
     if options.json:
         write(options.json, calibration_output.as_json(measured, result, uncorrected, response, options.dumps))
     if options.plots:

@@ -14,6 +14,7 @@ from .calibration_diffusion import Diffusion, measure_diffusion
 from .calibration_estimate import CalibrationError, Estimate, combine
 from .calibration_flow import measure_drop, measure_fraction, measure_outflow
 from .calibration_front import Front, measure_front
+from .calibration_response import RADIUS, SLOPES
 from .calibration_spot_grains import spot_grains
 from .calibration_spreading import Spreading, measure_spreading
 from .calibration_view import view_of
@@ -57,7 +58,7 @@ class Measured:
         return combine(lambda fraction, size: spot_grains(fraction, size, container, self.buffer), self.fraction, radius)
 
 
-def measure(run, start=None, end=None, buffer=1.0):
+def measure(run, start=None, end=None, buffer=0.25):
     """Measured from RunStatistics; raises CalibrationError.
 
     start, end : tau, see ``calibration_view.choose_snapshots``; buffer : d
@@ -74,9 +75,11 @@ def parameters(measured, response):
     """name -> Estimate of what gives what was ``measured``, with a ``calibration_response``: the five parameters, and the
     number of grains <N> in a spot, by which nu_s was found."""
     diffusion = combine(np.divide, measured.spreading.diffusion, response["diffusion"])
-    radius = combine(np.subtract, measured.correlation.radius, response["radius"])
-    influence = combine(lambda b_p, added, share, b_s: (b_p - added) / (share * b_s), measured.diffusion.length,
-                        response["particle_diffusion"], response["share"], diffusion)
+    radius = combine(lambda shown, added, slope: RADIUS + (shown - added - RADIUS) / slope, measured.correlation.radius,
+                     response["radius"], response["radius_slope"])
+    influence = combine(lambda b_p, added, slope, size, share, b_s: (b_p - added - slope * (size - RADIUS)) / (share * b_s),
+                        measured.diffusion.length, response["particle_diffusion"], response["diffusion_slope"], radius,
+                        response["share"], diffusion)
     speed = combine(np.divide, measured.speed, response["speed"])
     for name, value in (("radius", radius), ("influence", influence), ("diffusion", diffusion), ("speed", speed)):
         if not value.is_determined(2.0):
@@ -92,20 +95,22 @@ def parameters(measured, response):
             "injection": injection}
 
 
-def response_of(measured, put_in, share):
+def response_of(measured, put_in, slopes):
     """What a spot run shows against what was put into it: a ``calibration_response``, name -> Estimate.
 
     put_in : name -> number, the run's parameters; without "volume" what its spots hold counts
-    share : Estimate, see there
+    slopes : a response, whose SLOPES are kept: one run alone cannot tell them
     """
     radius = Estimate(np.array(put_in["radius"]), np.full_like(measured.outflow.replicates, put_in["radius"]))
     count = put_in.get("volume", measured.grains_in(radius).value)
     return {
-        "radius": combine(np.subtract, measured.correlation.radius, radius),
+        "radius": combine(lambda shown, size, slope: shown - RADIUS - slope * (size - RADIUS), measured.correlation.radius,
+                          radius, slopes["radius_slope"]),
         "diffusion": combine(lambda value: value / put_in["diffusion"], measured.spreading.diffusion),
-        "particle_diffusion": combine(lambda b_p, part: b_p - part * put_in["influence"] * put_in["diffusion"],
-                                      measured.diffusion.length, share),
-        "share": share,
+        "particle_diffusion": combine(
+            lambda b_p, share, slope: b_p - share * put_in["influence"] * put_in["diffusion"] - slope * (put_in["radius"] - RADIUS),
+            measured.diffusion.length, slopes["share"], slopes["diffusion_slope"]),
+        **{name: slopes[name] for name in SLOPES},
         "speed": combine(lambda value: value / put_in["speed"], measured.speed),
         "outflow": combine(lambda outflow: outflow / (put_in["injection"] * put_in["influence"] * count),
                            measured.outflow),

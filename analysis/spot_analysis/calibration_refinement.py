@@ -16,12 +16,13 @@ from .progress import Progress
 from .scene import load_scene
 
 
-def refine(target, response, rounds, deck, lmp, duration, words="", warn=print, report=print):
+def refine(target, response, rounds, deck, lmp, duration, words="", warn=print, report=print, profile="parabolic"):
     """Parameters for which a spot run shows what was measured in ``target``.
 
     target : Measured; response : to begin with
     deck, lmp : files; duration : of each run, tau; words : more keywords for fix spot, such as a faster driver's
     report : called with a line after each round
+    profile : of the spots
 
     Each round runs the deck with the present parameters, measures its dumps in the same way, and takes out of the target
     what this run shows against what was put in. Returns parameters and the last response; raises CalibrationError where
@@ -31,12 +32,12 @@ def refine(target, response, rounds, deck, lmp, duration, words="", warn=print, 
     for number in range(1, rounds + 1):
         put_in = {name: float(value.value) for name, value in present.items()}
         with tempfile.TemporaryDirectory(prefix="calibrate.") as folder:
-            run_deck(deck, lmp, lammps_variables(present, "the round before", target.view.interval.span), folder, duration, words,
-                     Progress(f"round {number}"))
+            variables = lammps_variables(present, "the round before", target.view.interval.span, profile)
+            run_deck(deck, lmp, variables, folder, duration, words, Progress(f"round {number}"))
             dumps = os.path.join(folder, "dumps")
             statistics = run_statistics.measure(dumps, load_scene(dumps), f"round {number}", warn=warn, concepts=CONCEPTS)
             run = measure(statistics, STEADY_FROM, None, target.buffer)
-        response = response_of(run, put_in, response["share"])
+        response = response_of(run, put_in, response)
         present = parameters(target, response)
         report(f"round {number}: a run with " + ", ".join(f"{name} {value:.4g}" for name, value in put_in.items())
                + "; against what was put in it shows "

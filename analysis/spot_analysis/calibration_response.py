@@ -36,15 +36,16 @@ from .calibration_estimate import Estimate
 # (value, standard error)
 FINE_SHARE, COARSE_SHARE = (0.70, 0.02), (0.77, 0.02)  # dz of 0.1 to 0.2 d, of 0.8 d
 STORED = {
-    "2006": {"radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": (1.0, 0.0), "particle_diffusion": (0.0, 0.0),
+    "2006": {"stretch": (1.0, 0.0), "radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": (1.0, 0.0), "particle_diffusion": (0.0, 0.0),
              "speed": (1.0, 0.0), "outflow": (1.0, 0.0)},
-    "unrelaxed": {"radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": FINE_SHARE, "particle_diffusion": (0.0, 0.0),
+    "unrelaxed": {"stretch": (1.0, 0.0), "radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": FINE_SHARE, "particle_diffusion": (0.0, 0.0),
                   "speed": (1.0, 0.0), "outflow": (1.0, 0.0)},
     "windowed": {"radius": (0.19, 0.055), "diffusion": (0.970, 0.008), "share": COARSE_SHARE,
                  "particle_diffusion": (1.72e-3, 0.22e-3), "speed": (0.995, 0.01), "outflow": (0.962, 0.006)},
-    "time_ordered": {"radius": (0.31, 0.08), "diffusion": (1.0, 0.01), "share": FINE_SHARE,
+    "time_ordered": {"stretch": (1.0, 0.0), "radius": (0.31, 0.08), "diffusion": (1.0, 0.01), "share": FINE_SHARE,
                      "particle_diffusion": (2.8e-3, 0.3e-3), "speed": (1.03, 0.02), "outflow": (0.90, 0.01)},
 }
+PROFILES = {"windowed": "parabolic"}  # of the spots; those of the others are uniform, as those of 2006
 NAMES = tuple(STORED["2006"])
 
 

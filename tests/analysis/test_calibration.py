@@ -11,6 +11,7 @@ import pytest
 from scipy.spatial import cKDTree
 from spot_analysis import (calibration, calibration_output, calibration_refinement, calibration_response, calibration_view,
                            run_statistics)
+from spot_analysis.bootstrap import RESAMPLES
 from spot_analysis.calibration_estimate import CalibrationError, Estimate
 from spot_analysis.scene import load_scene
 
@@ -71,7 +72,7 @@ def script(*arguments):
 def result(dumps, tmp_path_factory):
     folder = tmp_path_factory.mktemp("result")
     files = [folder / name for name in ("parameters", "calibration.json", "plots")]
-    done = script(dumps, "--response", "2006", "-o", files[0], "--json", files[1], "--plots", files[2])
+    done = script(dumps, "--response", "2006", "--buffer", 1, "-o", files[0], "--json", files[1], "--plots", files[2])
     assert done.returncode == 0, done.stderr
     return done, json.loads(files[1].read_text()), files
 
@@ -128,6 +129,22 @@ def test_parameter_file_speaks_the_decks_language(result):
         assert value == pytest.approx(result[1]["parameters"][name]["value"], rel=1e-5)
 
 
+def test_parabolic_spots_have_the_volume_of_the_uniform_ones(result):
+    """A mean share of 2/5 in a sphere that is 5/2 as large."""
+    parameters = {name: Estimate(np.array(number["value"]), np.full(RESAMPLES, number["value"]))
+                  for name, number in result[1]["parameters"].items()}
+
+    def deck(profile):
+        lines = calibration_output.lammps_variables(parameters, "nothing", (0, 0), profile).splitlines()
+        return {line.split()[1]: line.split()[3] for line in lines if line.startswith("variable")}
+
+    uniform, parabolic = deck("uniform"), deck("parabolic")
+    radii = [float(one.pop("radius").strip("$()").split("*")[0]) for one in (uniform, parabolic)]
+    assert 2 / 5 * radii[1]**3 == pytest.approx(radii[0]**3, rel=1e-4)
+    assert uniform.pop("profile") == "uniform" and parabolic.pop("profile") == "parabolic"
+    assert uniform == parabolic
+
+
 def test_plots(result):
     assert sorted(path.name for path in result[2][2].iterdir()) == [
         "correlation.png", "diffusion.png", "flow.png", "profiles.png", "spreading.png"]
@@ -163,14 +180,14 @@ def test_packing_at_rest_is_refused(dumps, tmp_path):
 @pytest.fixture(scope="module")
 def measured(dumps):
     run = run_statistics.measure(str(dumps), load_scene(str(dumps)), concepts=calibration_view.CONCEPTS)
-    return calibration.measure(run)
+    return calibration.measure(run, buffer=1.0)
 
 
 def test_response_undoes_itself(measured):
     """Parameters put in come back when the response was measured on the same run."""
     put_in = {"radius": 2.3, "influence": 2e-3, "diffusion": 1.1, "speed": 3.0, "injection": 400.0}
-    share = calibration_response.stored_response("windowed")["share"]
-    found = calibration.parameters(measured, calibration.response_of(measured, put_in, share))
+    slopes = calibration_response.stored_response("windowed")
+    found = calibration.parameters(measured, calibration.response_of(measured, put_in, slopes))
     for name, value in put_in.items():
         assert found[name].value == pytest.approx(value, rel=1e-6), name
 
