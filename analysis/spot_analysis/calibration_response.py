@@ -1,31 +1,31 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a spot run shows against what was put into it, so that calibration can take the difference out.
 
-    R_s shown = R_s + radius            b_s shown = b_s * diffusion         v_s shown = v_s * speed
-    b_p = share * w b_s + particle_diffusion                                F = outflow * nu_s w <N>
+    R_s shown = RADIUS + radius + radius_slope (R_s - RADIUS)     b_s shown = b_s * diffusion     v_s shown = v_s * speed
+    b_p = share * w b_s + particle_diffusion + diffusion_slope (R_s - RADIUS)
+    F = outflow * nu_s w <N>
 
-share: 2006 has b_p = w b_s. It holds if a step moves the grains around its start. With influence taken at the middle of the
-step, as 2006 says, steps that enter a grain's sphere and those that leave it undo each other in part: walks laid over a
-grain give 0.69 to 0.72 with dz of 0.1 and 0.2 d, 0.76 to 0.80 with 0.8 d, for R_s of 2.2 to 3 d and b_s of 1 to 1.5 d.
+R_s is that of uniform spots with the same volume. 2006 has b_p = w b_s. It holds if a step moves the grains around its start.
+With influence taken at the middle of the step, as 2006 says, steps that enter a grain's sphere and those that leave it undo
+each other in part: walks laid over a grain give a share of 0.69 to 0.72 with dz of 0.1 and 0.2 d, for R_s of 2.2 to 3 d and
+b_s of 1 to 1.5 d. Relaxation pushes grains about, on through their neighbours, and the more so the smaller w: so a third of
+w b_s is all by which b_p follows w, and R_s matters as much. Runs of fix spot on the packing of examples/silo (parabolic spots
+of a fixed volume, "accuracy normal"), in d and tau, 40-90 tau, outflow against nu_s w N; analysis/one_factor.py made them:
 
-particle_diffusion, radius: relaxation pushes grains about, and pushes on through their neighbours. What it adds depends on
-the driver, and grows where w is small, so that below 2e-3 b_p hardly tells w. Runs of fix spot on the packing of
-examples/silo, in d, 40-90 tau, with "accuracy normal" (dz = 0.8 d, relax tol 0.003, alpha 0.8, momentum 0.6) and a fixed
-volume, outflow against nu_s w N:
+    R_s    w        b_s   N     v_s   seed   R_s shown       b_s shown       b_p             v_s shown       outflow
+    2.6    2.5e-3   1.35  77    3.0   1      2.98 +- 0.07    1.35 +- 0.03    3.02e-3         3.12 +- 0.04    0.977
+    2.6    2.5e-3   1.35  77    3.0   2      3.04 +- 0.16    1.35 +- 0.03    3.02e-3         3.11 +- 0.02    0.987
+    2.6    2.5e-3   1.35  77    3.0   3      3.02 +- 0.06    1.35 +- 0.02    3.10e-3         3.15 +- 0.06    0.993
+    1.95   2.5e-3   1.35  33.4  3.0   1      2.64 +- 0.09    1.34 +- 0.02    2.48e-3         3.14 +- 0.01    1.009
+    1.95   2.5e-3   1.35  33.4  3.0   2      2.50 +- 0.05    1.34 +- 0.02    2.45e-3         3.15 +- 0.02    1.000
+    3.25   2.5e-3   1.35  147   3.0   1      3.62 +- 0.09    1.31 +- 0.04    3.57e-3         3.00 +- 0.04    0.954
+    3.25   2.5e-3   1.35  147   3.0   2      3.82 +- 0.19    1.37 +- 0.02    3.38e-3         3.00 +- 0.04    0.961
+    2.6    1.5e-3   1.35  77    3.0   1      2.95 +- 0.08    1.35 +- 0.02    2.58e-3         3.12 +- 0.02    0.994
+    2.6    2.5e-3   1.35  77    3.65  1      2.93 +- 0.09    1.37 +- 0.03    3.30e-3         3.93 +- 0.06    0.977
 
-    R_s    w        b_s   N     seed   R_s shown        b_s           b_p                added     v_s            outflow
-    2.6    2.5e-3   1.25  77    1      2.68 +- 0.08     1.21 +- 0.02  (4.00 +- 0.07)e-3  1.59e-3   3.21 +- 0.04   0.951
-    2.6    2.5e-3   1.25  77    2      2.78 +- 0.07     1.22 +- 0.02  (4.16 +- 0.09)e-3  1.75e-3   3.21 +- 0.01   0.961
-    2.6    2.5e-3   1.25  77    3      2.80 +- 0.07     1.23 +- 0.02  (4.09 +- 0.11)e-3  1.68e-3   3.15 +- 0.04   0.959
-    2.2    3.5e-3   1.0   47.5  1      2.43 +- 0.06     0.97 +- 0.01  (4.03 +- 0.14)e-3  1.34e-3   3.21 +- 0.02   0.970
-    2.6    1.5e-3   1.25  77    1      2.84 +- 0.06     1.20 +- 0.02  (3.51 +- 0.14)e-3  2.07e-3   3.17 +- 0.02   0.961
-    2.63   1.61e-3  1.57  79.5  1      2.80 +- 0.08     1.53 +- 0.02  (3.81 +- 0.16)e-3  1.87e-3   3.17 +- 0.02   0.959
-    2.4    1.5e-3   1.25  61.5  2      2.56 +- 0.05     1.21 +- 0.02  (3.28 +- 0.10)e-3  1.83e-3   3.13 +- 0.01   0.964
-    2.4    2.0e-3   1.4   61.5  1      2.65 +- 0.06     1.35 +- 0.02  (3.81 +- 0.11)e-3  1.65e-3   2.81 +- 0.01   0.970
-
-Mean and scatter of these eight, the last with v_s = 2.8 d/tau and the others with 3.2 d/tau, are STORED as "windowed".
-"time_ordered" (relax every 1, dz = 0.2 d, constant w) is from one run, 40-100 tau: R_s 2.91 +- 0.08, b_p (4.99 +- 0.19)e-3
-for R_s = 2.6 d, w = 2.5e-3, b_s = 1.25 d.
+Straight lines through these, and the scatter about them, are STORED as "windowed".
+"time_ordered" (uniform spots, relax every 1, dz = 0.2 d, constant w) is from one run, 40-100 tau: R_s 2.91 +- 0.08, b_p
+(4.99 +- 0.19)e-3 for R_s = 2.6 d, w = 2.5e-3, b_s = 1.25 d.
 """
 
 import numpy as np
@@ -34,15 +34,19 @@ from .bootstrap import RESAMPLES
 from .calibration_estimate import Estimate
 
 # (value, standard error)
-FINE_SHARE, COARSE_SHARE = (0.70, 0.02), (0.77, 0.02)  # dz of 0.1 to 0.2 d, of 0.8 d
+FINE_SHARE = (0.70, 0.02)  # dz of 0.1 to 0.2 d
+RADIUS = 2.6  # d
+SLOPES = ("radius_slope", "diffusion_slope", "share")  # what one run cannot tell
+FREE = {"radius_slope": (1.0, 0.0), "diffusion_slope": (0.0, 0.0)}  # shown as it is, whatever R_s
 STORED = {
-    "2006": {"stretch": (1.0, 0.0), "radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": (1.0, 0.0), "particle_diffusion": (0.0, 0.0),
+    "2006": {**FREE, "radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": (1.0, 0.0), "particle_diffusion": (0.0, 0.0),
              "speed": (1.0, 0.0), "outflow": (1.0, 0.0)},
-    "unrelaxed": {"stretch": (1.0, 0.0), "radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": FINE_SHARE, "particle_diffusion": (0.0, 0.0),
+    "unrelaxed": {**FREE, "radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": FINE_SHARE, "particle_diffusion": (0.0, 0.0),
                   "speed": (1.0, 0.0), "outflow": (1.0, 0.0)},
-    "windowed": {"radius": (0.19, 0.055), "diffusion": (0.970, 0.008), "share": COARSE_SHARE,
-                 "particle_diffusion": (1.72e-3, 0.22e-3), "speed": (0.995, 0.01), "outflow": (0.962, 0.006)},
-    "time_ordered": {"stretch": (1.0, 0.0), "radius": (0.31, 0.08), "diffusion": (1.0, 0.01), "share": FINE_SHARE,
+    "windowed": {"radius": (0.41, 0.06), "radius_slope": (0.89, 0.08), "diffusion": (0.998, 0.014), "share": (0.33, 0.05),
+                 "particle_diffusion": (1.93e-3, 0.12e-3), "diffusion_slope": (0.78e-3, 0.10e-3), "speed": (1.038, 0.024),
+                 "outflow": (0.984, 0.018)},
+    "time_ordered": {**FREE, "radius": (0.31, 0.08), "diffusion": (1.0, 0.01), "share": FINE_SHARE,
                      "particle_diffusion": (2.8e-3, 0.3e-3), "speed": (1.03, 0.02), "outflow": (0.90, 0.01)},
 }
 PROFILES = {"windowed": "parabolic"}  # of the spots; those of the others are uniform, as those of 2006
