@@ -22,6 +22,7 @@ void TiledPacking::list_all(const Container& container) {
   find_planes(container);
   for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot)
     if (ids_[slot] >= 0) list(slot, container);
+  choose_sent(every_cell);
   exchange_border(container);
 }
 

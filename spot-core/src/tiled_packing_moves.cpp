@@ -55,6 +55,8 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
     if (received)
       for (std::size_t slot = 0; slot < received_.size(); ++slot)
         if (received_[slot] > 0) (*received)[ids_[slot]] += received_[slot];
+    // Sweeps are the next to ask where others' grains are.
+    choose_sent(look_ ? no_cell : every_cell);
     update_lists(container, workers);
     first = end;
     if (!look_) return;

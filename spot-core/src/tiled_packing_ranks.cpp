@@ -77,7 +77,7 @@ void TiledPacking::exchange_migrants(const Container& container) {
     }
 }
 
-/// Brings the copies that neighbours hold up to date.
+/// Brings the copies that neighbours hold up to date: lists, and positions as choose_sent() said.
 void TiledPacking::exchange_border(const Container& container) {
   if (communicator_->size() == 1) return;
   std::array<Bytes, 2> outgoing;
@@ -89,15 +89,30 @@ void TiledPacking::exchange_border(const Container& container) {
       take_changes(incoming[static_cast<std::size_t>(side)], side, container);
 }
 
-/// Calls visit(slot) for all occupied slots of a layer, in order.
-template <typename Visit>
-void TiledPacking::visit_layer(std::uint32_t first_cell, const Visit& visit) const {
-  for (std::uint32_t slot = first_cell * capacity_; slot < (first_cell + cells_in_layer()) * capacity_; ++slot)
-    if (ids_[slot] >= 0) visit(slot);
+/// Neighbours are told where the grains of those border cells are that have been charged with so much, when this is
+/// called; they have the same accounts, and know which to expect.
+void TiledPacking::choose_sent(std::int32_t account) {
+  sent_.resize(account_.size());
+  for (const int side : {below, above})
+    for (const bool own : {false, true}) {
+      if (border_[static_cast<std::size_t>(side)] == 0) continue;
+      const std::uint32_t first = first_of_border(side, own);
+      for (std::uint32_t cell = first; cell < first + cells_in_layer(); ++cell) sent_[cell] = account_[cell] >= account;
+    }
 }
 
-/// What has changed in the layer next to a neighbour's since it was told last, the accounts of its cells, and where all
-/// grains in it are.
+/// Calls visit(slot) for all occupied slots of the chosen cells of a layer, in order.
+template <typename Visit>
+void TiledPacking::visit_sent(std::uint32_t first_cell, const Visit& visit) const {
+  for (std::uint32_t cell = first_cell; cell < first_cell + cells_in_layer(); ++cell) {
+    if (sent_[cell] == 0) continue;
+    for (std::uint32_t slot = cell * capacity_; slot < (cell + 1) * capacity_; ++slot)
+      if (ids_[slot] >= 0) visit(slot);
+  }
+}
+
+/// What has changed in the layer next to a neighbour's since it was told last, the accounts of its cells, and where the
+/// grains of the chosen cells are.
 Bytes TiledPacking::changes(int side) {
   std::vector<Change> changed;
   const std::uint32_t first = first_of_border(side, true);
@@ -109,7 +124,7 @@ Bytes TiledPacking::changes(int side) {
   append(bytes, changed);
   const auto account = account_.begin() + first;
   append(bytes, std::vector<std::int32_t>(account, account + cells_in_layer()));
-  visit_layer(first, [&](std::uint32_t slot) {
+  visit_sent(first, [&](std::uint32_t slot) {
     append(bytes, Moved{points_[slot].x, points_[slot].y, points_[slot].z});
   });
   return bytes;
@@ -134,7 +149,7 @@ void TiledPacking::take_changes(const Bytes& bytes, int side, const Container& c
     if (change.id >= 0) list(slot({first + change.in_layer, change.in_cell}), container);
   const auto accounts = reader.take_all<std::int32_t>();
   std::copy(accounts.begin(), accounts.end(), account_.begin() + first);
-  visit_layer(first, [&](std::uint32_t slot) {
+  visit_sent(first, [&](std::uint32_t slot) {
     const auto moved = reader.take<Moved>();
     points_[slot].x = moved.x;
     points_[slot].y = moved.y;

@@ -31,6 +31,7 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
     tasks_[k].last = static_cast<std::uint32_t>(n * (k + 1) / tasks);
   }
   workers.run([&](int worker) { collect(tasks_[static_cast<std::size_t>(worker)]); });
+  choose_sent(parts);
   set_border(Point::free, Point::due, parts);
   workers.run([&](int worker) { push_apart(tasks_[static_cast<std::size_t>(worker)], parameters, container); });
   if (!container.concurrent())

@@ -193,7 +193,7 @@ def test_response_undoes_itself(measured):
 
 
 def test_influence_that_relaxation_hides_is_refused(measured):
-    response = {**calibration_response.stored_response("windowed"), "particle_diffusion": measured.diffusion.length}
+    response = {**calibration_response.stored_response("unrelaxed"), "particle_diffusion": measured.diffusion.length}
     with pytest.raises(CalibrationError, match="w is not determined: .* of b_p = .* relaxation alone makes"):
         calibration.parameters(measured, response)
 

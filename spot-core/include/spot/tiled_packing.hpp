@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -241,8 +242,9 @@ class TiledPacking {
   void exchange_border(const Container& container);
   Bytes changes(int side);
   void take_changes(const Bytes& bytes, int side, const Container& container);
+  void choose_sent(std::int32_t account);
   template <typename Visit>
-  void visit_layer(std::uint32_t first_cell, const Visit& visit) const;
+  void visit_sent(std::uint32_t first_cell, const Visit& visit) const;
   std::uint32_t first_of_border(int side, bool own) const;
 
   // What goes elsewhere.
@@ -272,6 +274,9 @@ class TiledPacking {
   void push(Point& point, const Vector3& by) const;
   void apply(Task& task, int due, float deepest, float momentum);
 
+  static constexpr std::int32_t every_cell = std::numeric_limits<std::int32_t>::min();
+  static constexpr std::int32_t no_cell = std::numeric_limits<std::int32_t>::max();
+
   /// Accounts are kept in sixteenths of a move, and a sweep can cost such parts.
   static constexpr std::int32_t parts_of_move = 16;
 
@@ -294,6 +299,7 @@ class TiledPacking {
   int first_layer_ = 0;                        // of those held
   std::array<std::vector<Place>, 2> changed_;  // what has come, gone or been listed anew where others hold copies
   std::array<Bytes, 2> migrants_;              // grains that go to the ranks below and above
+  std::vector<std::uint8_t> sent_;             // of border cells, ours and theirs: will positions be sent?
 
   AlignedVector<Point> points_, references_;
   AlignedVector<Point> momenta_;              // the last correction, as far as it is carried on
