@@ -34,6 +34,12 @@ Vector3 step_vector(const SpotParameters& p, double uniform) {
   }
 }
 
+/// The number that gives the step to the other side.
+double opposite(double uniform) {
+  const bool odd = static_cast<int>(4.0 * uniform) % 2 == 1;
+  return odd ? uniform - 0.25 : uniform + 0.25;
+}
+
 }  // namespace
 
 SpotWalk::SpotWalk(const SpotParameters& parameters, const Container& container) : parameters_(parameters) {
@@ -73,8 +79,10 @@ Move SpotWalk::step(Spot& spot, const Container& container) const {
   Move move;
   move.time = spot.next_step;
   move.spot = spot.id;
-  const Vector3 start = spot.position;
-  spot.position = container.keep_spot_inside(start, start + step_vector(parameters_, spot.turn));
+  const Vector3 start = spot.position, target = start + step_vector(parameters_, spot.turn);
+  spot.position = container.keep_spot_inside(start, target);
+  // A spot that a wall has reflected goes on away from it, if it goes on its way.
+  if (spot.position != target) spot.turn = opposite(spot.turn);
   move.middle = 0.5 * (start + spot.position);
   move.step = spot.position - start;
   move.number = ++spot.steps;

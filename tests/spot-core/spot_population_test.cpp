@@ -342,12 +342,16 @@ double uncut_part(double y, double wall, double radius) {
 
 /// Between walls 8 d apart: spots that keep one diameter from them spread evenly, and the walls leave them 0.957 of
 /// their sphere on average.
-TEST(SpotPopulationStatistical, SpotsStayUniformBetweenPlaneWalls) {
+class SpotsBetweenWallsStatistical : public testing::TestWithParam<double> {};  // persistence
+
+TEST_P(SpotsBetweenWallsStatistical, StayUniform) {
   const auto silo = scenes::small_silo(25.0, 4.0);
   const int number = 3000, steps = 326;  // 30 d above the orifice, ten times what evening out takes
   std::vector<int> layers(12);
   double sum = 0.0, sum_of_squares = 0.0;
-  walk(scenes::paper_spots(), *silo, number, steps, [&](const Move& move, int n) {
+  SpotParameters spots = scenes::paper_spots();
+  spots.persistence = GetParam();
+  walk(spots, *silo, number, steps, [&](const Move& move, int n) {
     const Vector3 end = end_of(move);
     ASSERT_LE(std::abs(end.y()), 3.0 + 1e-12);
     ASSERT_LE(std::abs(end.x()), 24.0 + 1e-12);
@@ -363,6 +367,8 @@ TEST(SpotPopulationStatistical, SpotsStayUniformBetweenPlaneWalls) {
   EXPECT_LT(std::abs(mean - 0.9573) / error, bound) << mean;
   EXPECT_LT(error, 0.002);
 }
+
+INSTANTIATE_TEST_SUITE_P(Persistence, SpotsBetweenWallsStatistical, testing::Values(0.0, 0.8));
 
 TEST(SpotPopulationAnalytic, RisingSpotsKeepTheirRadiusFromBaseAndRim) {
   const auto silo = scenes::small_silo(8.0, 4.0);
