@@ -71,7 +71,9 @@ double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tol
   if (!(tolerance > 0.0) || !std::isfinite(tolerance))
     throw InvalidParameter(message("relaxation tolerance is ", tolerance, " but must be positive and finite"));
   const double displacement = spots.influence * spots.step_width;
-  const double difference = displacement * displacement * spots.mean_square_difference(diameter);
+  // The steps of a persistent spot add up for some time.
+  const double in_a_row = (1.0 + spots.persistence) / (1.0 - spots.persistence);
+  const double difference = displacement * displacement * in_a_row * spots.mean_square_difference(diameter);
   return std::max(0.1, 3.0 * tolerance * tolerance * diameter * diameter / difference);
 }
 
