@@ -29,12 +29,16 @@ def test_cylinder(tmp_path):
 
 
 def test_region_against_native_box(tmp_path):
-    """A block with a pipe through its floor is the box silo with its orifice, up to what rim and pipe do to grains."""
+    """A block with a pipe through its floor is the box silo with its orifice, up to what rim and pipe do to grains.
+
+    LAMMPS reports the faces of a region, not its edges: nothing holds a grain up whose centre is just inside the rim, and one that
+    then is pushed outwards meets the floor from close by. The floor's reach is therefore asked of grains clear of the region's rim.
+    """
     outflow = {}
     # The pipe's top face is open and inside the block: unions drop surfaces that are inside another part.
     regions = ("region silo block -5 5 -4 4 0 19\nregion pipe cylinder z 0 0 3 -4 1e-3\n"
                "region all_walls union 2 silo pipe")
-    for name, walls, before in [("box", WALLS, ""), ("region", "region all_walls", regions)]:
+    for name, walls, before, rim in [("box", WALLS, "", 0), ("region", "region all_walls", regions, 0.2)]:
         (tmp_path / name).mkdir()
         log, frames = drained(tmp_path / name, walls, before)
         outflow[name] = log["f_drain[3]"][-1]
@@ -42,7 +46,7 @@ def test_region_against_native_box(tmp_path):
             x, y, z = positions(frame).T
             assert abs(x).max() <= 4.5 + TOLERANCE and abs(y).max() <= 3.5 + TOLERANCE
             from_axis = np.hypot(x, y)
-            assert z[(z > 0) & (from_axis > 3)].min() >= 0.5 - TOLERANCE
+            assert z[(z > 0) & (from_axis > 3 + rim)].min() >= 0.5 - TOLERANCE
             assert from_axis[z <= 0].max(initial=0) < 3.1
     assert outflow["region"] == pytest.approx(outflow["box"], rel=0.1)
 
