@@ -71,6 +71,17 @@ def test_threads(snapshots, tmp_path):
     assert run_example(FRONT_END, tmp_path / "out", time=0.035, threads=3) == snapshots[1]
 
 
+def test_silo_out_of_sample(tmp_path):
+    """What examples/silo/out-of-sample/run.sh does to the deck: another packing, narrower walls and orifice."""
+    out = tmp_path / "out"
+    dumps = run_example(FRONT_END, out, time=0.035, packing="out-of-sample/packing.data.gz", half_width=16, orifice=6.5, births=193)
+    scene = json.loads((out / "scene.json").read_text())
+    assert scene["grains"] == 18000 and scene["half_width_x"] == pytest.approx(0.048)
+    assert scene["orifice_radius"] == pytest.approx(3.25 * 0.003)
+    last = np.loadtxt(list(dumps.values())[-1].splitlines()[9:])
+    assert 17800 < len(last) < 18000 and (abs(last[:, 2]) < 16 * 0.003).all()
+
+
 def thermo_but_times(log):
     return {name: list(values) for name, values in thermo(log).items() if not name.startswith("CPU")}
 
