@@ -5,6 +5,7 @@ model's Gaussian."""
 
 import argparse
 import json
+import math
 import os
 
 from spot_analysis.interpreter import require_packages
@@ -15,6 +16,7 @@ import numpy as np  # noqa: E402  (only after the check above)
 
 from spot_analysis import command_line  # noqa: E402
 from spot_analysis.dump import read_frames  # noqa: E402
+from spot_analysis.errors import AnalysisError  # noqa: E402
 from spot_analysis.snapshot import LAG_TAU  # noqa: E402
 
 STEP = 0.05  # tau; below the time in which a grain at the orifice falls by a tenth of a diameter
@@ -66,8 +68,16 @@ def write_frame(folder, time, ids, positions):
         np.savetxt(handle, np.column_stack([ids, positions]), fmt="%d %.9g %.9g %.9g")
 
 
+def check(options):
+    """Raises AnalysisError for a rate or length that is no positive number."""
+    for name in ("time", "outflow", "diffusion", "start"):
+        if not 0 < getattr(options, name) < math.inf:
+            raise AnalysisError(f"--{name} is {getattr(options, name):g} but must be positive and finite")
+
+
 def main():
     options = parse_arguments()
+    check(options)
     scene = command_line.scene_from_options(options, options.packing)
     frame = next(read_frames(options.packing))
     ids, positions = frame.ids, frame.positions / scene.diameter

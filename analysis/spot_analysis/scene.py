@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a dump does not say: units and geometry of the run, read from the ``scene.json`` beside the dumps."""
 
+import glob
 import json
 import math
 import os
@@ -67,8 +68,10 @@ def load_scene(source, scene_file=None, overrides=None):
     scene_file : read instead of the ``scene.json`` in the dumps' folder
     overrides : key -> value, wins over the file; None values are ignored
 
-    Raises SceneError naming the missing or misspelt key.
+    Raises SceneError if there is no such source, or naming the missing or misspelt key.
     """
+    if not glob.has_magic(source) and not os.path.exists(source):
+        raise SceneError(f"{source}: no such file or folder")
     path = scene_file or os.path.join(source if os.path.isdir(source) else os.path.dirname(source), FILE_NAME)
     values = _read_json(path) if scene_file or os.path.exists(path) else {}
     values.update({key: value for key, value in (overrides or {}).items() if value is not None})

@@ -64,3 +64,13 @@ def test_outflow_of_the_kinematic_model(packing, tmp_path):
     found = frames(packing, tmp_path / "out", "kinematic")
     above = [(frame.positions[:, 2] > 0).sum() for frame in found]
     assert above[0] - above[-1] == pytest.approx(696, abs=80)
+
+
+@pytest.mark.parametrize("option", ["--time", "--outflow", "--diffusion", "--start"])
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf"])
+def test_bad_number(packing, tmp_path, option, value):
+    done = subprocess.run([sys.executable, "-B", str(ANALYSIS / "baseline.py"), "kinematic", packing, "-o", str(tmp_path / "out"),
+                           f"{option}={value}"], capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stderr == f"error: {option} is {float(value):g} but must be positive and finite\n"
+    assert not (tmp_path / "out").exists()

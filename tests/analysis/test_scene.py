@@ -28,7 +28,8 @@ def test_reads_the_file_beside_the_dumps(tmp_path):
 
 def test_options_win_over_the_file_and_suffice_without_it(tmp_path):
     assert load_scene(write(tmp_path, SCENE), overrides={"diameter": 2.0, "gravity": None}).diameter == 2.0
-    assert load_scene("absent", overrides={key: SCENE[key] for key in NUMBERS}).diameter == 1.0
+    (tmp_path / "bare").mkdir()
+    assert load_scene(str(tmp_path / "bare"), overrides={key: SCENE[key] for key in NUMBERS}).diameter == 1.0
 
 
 @pytest.mark.parametrize("key", NUMBERS)
@@ -36,6 +37,12 @@ def test_missing_key_is_named(tmp_path, key):
     source = write(tmp_path, {k: v for k, v in SCENE.items() if k != key})
     with pytest.raises(SceneError, match=f"scene key '{key}' is missing in"):
         load_scene(source)
+
+
+@pytest.mark.parametrize("name", ["absent", "absent.npz"])
+def test_no_source(tmp_path, name):
+    with pytest.raises(SceneError, match="absent.*: no such file or folder"):
+        load_scene(f"{tmp_path}/{name}", overrides={key: SCENE[key] for key in NUMBERS})
 
 
 def test_no_file_is_named(tmp_path):
