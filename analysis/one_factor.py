@@ -37,7 +37,7 @@ CHOICES = {
     "persistence 0.8": {"options": "persistence 0.8"},
     "w 1.5e-3": {"influence": "1.5e-3", "injection": f"{613 / TAU}"},
     "v_s 3.65": {"speed": f"{3.65 * D / TAU}"},
-    **{f"dz {dz} d": {"options": f"dz {dz * D}"} for dz in (0.2, 0.4, 0.8, 1.6)},
+    **{f"dz {dz} d": {"options": f"dz {dz * D}"} for dz in (0.025, 0.1, 0.4, 1.6)},
     "alpha 0.6": {"options": "alpha 0.6"},
     "alpha 1.0": {"options": "alpha 1.0"},
     "no momentum": {"options": "momentum 0"},
