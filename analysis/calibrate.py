@@ -10,7 +10,7 @@ from spot_analysis.interpreter import require_packages
 require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 from spot_analysis import (calibration, calibration_output, calibration_plots, calibration_refinement,  # noqa: E402
-                           calibration_response, calibration_view, command_line)
+                           calibration_response, calibration_spreading, calibration_view, command_line)
 
 EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "examples", "silo", "in.silo_spot")
 
@@ -46,6 +46,7 @@ def main():
     options = parse_arguments()
     run = command_line.open_run(options.dumps, options, "", "calibrate", calibration_view.CONCEPTS)
     measured = calibration.measure(run, options.start, options.end, options.buffer)
+    calibration_spreading.warn_of_widening(measured.view, command_line.print_warning)
     response = calibration_response.stored_response(options.response)
     profile = calibration_response.PROFILES.get(options.response, "uniform")
     uncorrected = calibration.parameters(measured, calibration_response.stored_response("2006"))

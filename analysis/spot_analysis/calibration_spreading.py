@@ -12,6 +12,7 @@ from .fits import fit_line
 
 VARIANCES = np.arange(5.0, 600.0, 1.0)  # d^2
 FINE = 10  # points a bin for the walled form
+WIDENING = 0.05  # share by which a flow may get wider from one half of the interval to the other and still count as steady
 IMAGES = 3  # reflections on each side; with 24 d to the wall they hold up to a variance of 2000 d^2
 
 
@@ -60,6 +61,35 @@ def walled_profiles(edges, variances, half_width, buffer, radius):
     binned = np.zeros((len(variances), len(edges) - 1))
     np.add.at(binned.T, bins[kept], smooth[:, kept].T)
     return binned / FINE
+
+
+def measure_widening(view):
+    """Growth of the v_z profiles' second moments, averaged over the heights of profile_width.LINE, from the first half of the
+    view's interval to the second, over their mean; an Estimate. DEM's flow gets wider long after its outflow is steady, and b_s
+    with it."""
+    run = view.run
+    used = profile_width.in_line(run.profile_heights)
+    columns = np.stack([run.profile_counts[:, used], run.profile_sums[:, used]], axis=1)
+    late = (run.profile_start + run.profile_end) / 2 > np.mean(view.interval.span)
+    halves = np.stack([columns * ~late[:, None, None, None], columns * late[:, None, None, None]], axis=1)
+
+    def growth(sums):
+        both = sums.reshape(*sums.shape[:-1], *halves.shape[1:])
+        first, second = np.moveaxis(profile_width.moment_variance(both[..., 0, :, :], both[..., 1, :, :],
+                                                                  run.profile_edges).mean(axis=-1), -1, 0)
+        return 2 * (second - first) / (second + first)
+
+    return estimate_pairs(view, run.profile_start, run.profile_end, halves.reshape(len(halves), -1), growth)
+
+
+def warn_of_widening(view, warn):
+    """Calls warn(text) where the flow does not keep its width."""
+    growth = measure_widening(view)
+    if abs(growth.value) > max(WIDENING, 2 * growth.error):
+        start, end = view.interval.span
+        warn(f"the flow does not keep its width: variances of its v_z profile change by {100 * growth.value:+.0f} +- "
+             f"{100 * growth.error:.0f} % between the halves of {start:g} to {end:g} tau, and b_s, w with them; "
+             "a later interval (--from) is better")
 
 
 def measure_spreading(view, radius, buffer):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """b_s from v_z profiles that spots of known diffusion length make between walls."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from spot_analysis import calibration_spreading as spreading
@@ -66,3 +68,25 @@ def test_a_plug_is_refused():
 def test_an_empty_bin_is_refused():
     with pytest.raises(CalibrationError, match="no grains somewhere in .x. < 24 d"):
         fit(np.zeros((len(TIMES), 2 * len(HEIGHTS) * 50)))
+
+
+def view_of_profiles(variances, scatter=0.01):
+    """A view whose v_z profiles are Gaussians with these variances, (P,), alike at all HEIGHTS, and what scatters."""
+    x = (EDGES[1:] + EDGES[:-1]) / 2
+    noise = 1 + scatter * np.random.default_rng(2).normal(size=(len(TIMES), 1, 1))
+    speeds = np.exp(-x**2 / (2 * noise * np.asarray(variances)[:, None, None])) * np.ones((1, len(HEIGHTS), 1))
+    run = SimpleNamespace(profile_heights=HEIGHTS, profile_edges=EDGES, profile_start=TIMES - 1, profile_end=TIMES + 1,
+                          profile_counts=np.full(speeds.shape, 100.0), profile_sums=100 * speeds)
+    return SimpleNamespace(run=run, interval=SimpleNamespace(span=SPAN), pair_rows=lambda start, end: np.arange(len(start)))
+
+
+@pytest.mark.parametrize("growth, warned", [(0.0, False), (0.03, False), (0.12, True), (-0.12, True)])
+def test_a_flow_that_gets_wider_is_told(growth, warned):
+    early = TIMES < np.mean(SPAN)
+    view = view_of_profiles(np.where(early, 40 * (1 - growth / 2), 40 * (1 + growth / 2)))
+    found = spreading.measure_widening(view)
+    assert found.value == pytest.approx(growth, abs=3 * found.error + 1e-3) and found.error < 0.02
+    texts = []
+    spreading.warn_of_widening(view, texts.append)
+    assert len(texts) == warned
+    assert not warned or f"change by {100 * float(found.value):+.0f} +-" in texts[0]
