@@ -35,6 +35,7 @@ CHOICES = {
     "R_s -25 %": {"radius": f"{2.65 * D}", "volume": "33.4", "injection": f"{848 / TAU}"},
     "R_s +25 %": {"radius": f"{4.41 * D}", "volume": "147", "injection": f"{193 / TAU}"},
     "persistence 0.8": {"options": "persistence 0.8"},
+    "dispersion 0.7, v_s 2.7": {"options": "dispersion 0.7", "speed": f"{2.7 * D / TAU}"},
     "w 1.5e-3": {"influence": "1.5e-3", "injection": f"{613 / TAU}"},
     "v_s 3.65": {"speed": f"{3.65 * D / TAU}"},
     **{f"dz {dz} d": {"options": f"dz {dz * D}"} for dz in (0.025, 0.1, 0.4, 1.6)},

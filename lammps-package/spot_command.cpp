@@ -197,6 +197,7 @@ const std::map<std::string, Reader>& readers() {
          c.spots.together = one_of<bool>(w, "steps", {{"poisson", false}, {"together", true}});
        }},
       {"persistence", [](SpotCommand& c, Words& w) { c.spots.persistence = w.not_negative("the persistence"); }},
+      {"dispersion", [](SpotCommand& c, Words& w) { c.spots.dispersion = w.not_negative("the dispersion"); }},
       {"threads", [](SpotCommand& c, Words& w) { c.threads = to_int(w.integer("the number of threads", 1)); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,
@@ -305,6 +306,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"diffusion", precise(spots.diffusion_length())},
           {"persistence", precise(spots.persistence)},
           {"speed", precise(spots.speed)},
+          {"dispersion", precise(spots.dispersion)},
           {"injection", precise(spots.injection_rate)},
           {"volume", precise(spots.fixed_volume)},
           {"steps", spots.together ? "together" : "poisson"},

@@ -29,6 +29,10 @@ void SpotParameters::validate() const {
   if (influence >= 1.0) throw InvalidParameter(message("spot influence is ", influence, " but must be below 1"));
   if (!(persistence >= 0.0 && persistence < 1.0))
     throw InvalidParameter(message("spot persistence is ", persistence, " but must be from 0 to below 1"));
+  if (!(dispersion >= 0.0 && dispersion <= 0.95))
+    throw InvalidParameter(message("spot dispersion is ", dispersion, " but must be from 0 to 0.95"));
+  if (dispersion > 0.0 && together)
+    throw InvalidParameter(message("spot dispersion is ", dispersion, " but must be 0 for spots that step together"));
   require_positive("spot step width", step_width);
   require_positive("spot step height", step_height);
   require_positive("spot speed", speed);

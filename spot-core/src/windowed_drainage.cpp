@@ -60,8 +60,9 @@ void WindowedDrainage::require_fitting_window() const {
   if (!(climb >= least_climb))
     throw InvalidParameter(message("in a window of ", clock, " spots climb ", climb, " diameters, but at least ",
                                    least_climb, " are needed: lengthen the window"));
-  require(climb, highest_climb, "diameters are climbed by spots");
-  require(clock * parameters_.move_rate(), most_steps, "steps are taken by a spot");
+  const double highest = clock * (parameters_.fastest() / diameter_);
+  require(highest, highest_climb, "diameters are climbed by spots");
+  require(clock * parameters_.fastest() / parameters_.step_height, most_steps, "steps are taken by a spot");
   require(clock * parameters_.injection_rate, most_births, "spots are born");
   require(flow_through_orifice(parameters_, clock, diameter_, container().orifice().radius), longest_flow,
           "diameters pass the orifice");

@@ -61,6 +61,8 @@ def test_missing_keyword(tmp_path, keyword):
     ("relax tol -1", ["'relax' is -1", "must be positive"]),
     ("accuracy high", ["'accuracy high' is not known", "'exact' or 'fast' or 'normal'"]),
     ("persistence 1", ["persistence is 1 ", "below 1"]),
+    ("dispersion 1", ["dispersion is 1 ", "from 0 to 0.95"]),
+    ("dispersion 0.5 steps together", ["dispersion is 0.5 ", "must be 0 for spots that step together"]),
     ("steps apart", ["'steps apart' is not known", "'poisson' or 'together'"]),
     ("momentum -1", ["'momentum' is -1", "zero or positive"]),
     ("momentum 1", ["momentum is 1 ", "below 1"]),

@@ -76,6 +76,19 @@ TEST(ParametersUnit, PersistenceMustBeBelowOne) {
   }
 }
 
+TEST(ParametersUnit, DispersionMustLeaveSpotsASpeed) {
+  SpotParameters spots = scenes::paper_spots();
+  for (const double wrong : {-0.1, 0.96, 1.0 / 0.0, std::nan("")}) {
+    spots.dispersion = wrong;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }),
+                AllOf(HasSubstr("dispersion"), HasSubstr("from 0 to 0.95")));
+  }
+  spots.dispersion = 0.95;
+  EXPECT_NO_THROW(spots.validate());
+  spots.together = true;
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }), HasSubstr("step together"));
+}
+
 TEST(ParametersUnit, DiffusionLengthOf2006) {
   SpotParameters spots = scenes::paper_spots();
   EXPECT_NEAR(spots.diffusion_length(), 1.156, 1e-12);

@@ -330,6 +330,30 @@ TEST(SpotPopulationStatistical, PersistentSpotsDiffuse) {
   EXPECT_LT(std::abs(xx / number / variance - 1.0) / std::sqrt(2.0 / number), bound) << xx / number / variance;
 }
 
+/// The time for n steps has the mean n dz / v_s with and without dispersion. Its variance over the mean's square is 1 / n
+/// for equal spots, D^2 + (1 + D^2) / n for a slowness with the variance D^2.
+TEST(SpotPopulationStatistical, DispersedSpotsTakeAsLongOnAverage) {
+  const auto space = space_above_orifice();
+  SpotParameters parameters = scenes::paper_spots();
+  const int number = 8000, steps = 64;
+  for (const double d : {0.0, 0.5, 0.9}) {
+    parameters.dispersion = d;
+    std::map<std::int64_t, double> first;
+    double sum = 0.0, squares = 0.0;
+    walk(parameters, *space, number, steps + 1, [&](const Move& move, int n) {
+      if (n == 1) first[move.spot] = move.time;
+      if (n != steps + 1) return;
+      const double time = (move.time - first[move.spot]) / (steps * parameters.mean_waiting_time());
+      sum += time;
+      squares += (time - 1.0) * (time - 1.0);
+    });
+    const double variance = d * d + (1.0 + d * d) / steps;
+    EXPECT_LT(std::abs(sum / number - 1.0) / std::sqrt(variance / number), bound) << sum / number;
+    // The fourth moment of an exponential is 9 times its variance squared.
+    EXPECT_LT(std::abs(squares / number / variance - 1.0) / std::sqrt(8.0 / number), bound) << squares / number;
+  }
+}
+
 /// Part of the sphere of radius R around a spot that lies between plane walls at y = +-wall.
 double uncut_part(double y, double wall, double radius) {
   double cut = 0.0;

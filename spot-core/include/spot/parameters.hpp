@@ -28,6 +28,8 @@ struct SpotParameters {
   InfluenceProfile profile = InfluenceProfile::uniform;
   /// p: the chance that a step goes the way of the last one, without drawing (2006, section V: a persistent walk).
   double persistence = 0.0;
+  /// D: standard deviation of spots' mean waiting times over their mean. 0: all climb equally fast.
+  double dispersion = 0.0;
   bool together = false;  ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
   std::uint64_t seed = 1;
 
@@ -35,6 +37,8 @@ struct SpotParameters {
   double move_rate() const { return speed / step_height; }
   /// dz / v_s
   double mean_waiting_time() const { return step_height / speed; }
+  /// The mean drift speed of the fastest spot there can be (length / time).
+  double fastest() const { return speed / (1.0 - dispersion); }
   /// b_s = Var(x) / (2 z) of the walk. Half of the steps go along x, so Var(dx) = dx^2 / 2 a step; steps that are k
   /// apart have a correlation of p^k, which adds up to b_s = dx^2 / (4 dz) (1 + p) / (1 - p) (length).
   double diffusion_length() const {
