@@ -34,8 +34,8 @@ Vector3 step_vector(const SpotParameters& p, double uniform) {
   }
 }
 
-/// A spot's mean waiting time over that of all: 1 - D, and an exponential share with the mean D. All means stay what they
-/// are without: spots climb a height in the same time, on average, and as many are on their way.
+/// A spot's mean waiting time over that of all: 1 - D, and an exponential share with the mean D. All means stay what
+/// they are without: spots climb a height in the same time, on average, and as many are on their way.
 double slowness(const SpotParameters& p, std::int64_t id) {
   if (p.dispersion == 0.0) return 1.0;
   return 1.0 - p.dispersion + exponential(numbers_of_birth(p, id)[3], 1.0 / p.dispersion);

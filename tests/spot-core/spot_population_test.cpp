@@ -330,8 +330,8 @@ TEST(SpotPopulationStatistical, PersistentSpotsDiffuse) {
   EXPECT_LT(std::abs(xx / number / variance - 1.0) / std::sqrt(2.0 / number), bound) << xx / number / variance;
 }
 
-/// The time for n steps has the mean n dz / v_s with and without dispersion. Its variance over the mean's square is 1 / n
-/// for equal spots, D^2 + (1 + D^2) / n for a slowness with the variance D^2.
+/// The time for n steps has the mean n dz / v_s with and without dispersion. Its variance over the mean's square is 1 /
+/// n for equal spots, D^2 + (1 + D^2) / n for a slowness with the variance D^2.
 TEST(SpotPopulationStatistical, DispersedSpotsTakeAsLongOnAverage) {
   const auto space = space_above_orifice();
   SpotParameters parameters = scenes::paper_spots();
