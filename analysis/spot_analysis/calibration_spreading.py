@@ -68,8 +68,7 @@ def measure_widening(view):
     view's interval to the second, over their mean; an Estimate. DEM's flow gets wider long after its outflow is steady, and b_s
     with it."""
     run = view.run
-    used = profile_width.in_line(run.profile_heights)
-    columns = np.stack([run.profile_counts[:, used], run.profile_sums[:, used]], axis=1)
+    columns = profile_width.counts_and_sums(run, profile_width.in_line(run.profile_heights))
     late = (run.profile_start + run.profile_end) / 2 > np.mean(view.interval.span)
     halves = np.stack([columns * ~late[:, None, None, None], columns * late[:, None, None, None]], axis=1)
 
@@ -99,7 +98,7 @@ def measure_spreading(view, radius, buffer):
     """
     run = view.run
     used = profile_width.in_line(run.profile_heights)
-    columns = np.concatenate([run.profile_counts[:, used], run.profile_sums[:, used]], axis=1)
+    columns = profile_width.counts_and_sums(run, used)
     return fit_spreading(
         lambda statistic: estimate_pairs(view, run.profile_start, run.profile_end, columns.reshape(len(columns), -1), statistic),
         run.profile_heights[used], run.profile_edges, run.scene.container(), radius, buffer)

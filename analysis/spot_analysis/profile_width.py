@@ -82,6 +82,11 @@ def quantities(view):
             "variance_slope": line_of("d", gaussian_variance, 0), "variance_intercept": line_of("d^2", gaussian_variance, 1)}
 
 
+def counts_and_sums(run, chosen):
+    """(P, 2, h, X): counts and sums of the profiles at the heights ``chosen``, of each pair of snapshots."""
+    return np.stack([run.profile_counts[:, chosen], run.profile_sums[:, chosen]], axis=1)
+
+
 def _estimate(view, unit, indices, width, statistic):
     """Value of ``statistic``, which maps the variances (..., h) of profiles number ``indices`` to (...); ``width`` maps
     counts and sums (..., h, X) and edges to variances."""
@@ -90,7 +95,7 @@ def _estimate(view, unit, indices, width, statistic):
     def of_sums(sums):
         return statistic(width(*np.split(sums.reshape(*sums.shape[:-1], 2 * len(indices), -1), 2, axis=-2), run.profile_edges))
 
-    columns = np.concatenate([run.profile_counts[:, indices], run.profile_sums[:, indices]], axis=1)
+    columns = counts_and_sums(run, indices)
     columns = columns.reshape(len(columns), 2 * len(indices) * (len(run.profile_edges) - 1))
     return view.estimate_pairs(unit, run.profile_start, run.profile_end, columns, of_sums)
 

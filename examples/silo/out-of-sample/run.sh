@@ -4,15 +4,17 @@
 # Drain silos that took no part in the calibration, with the parameters of ../in.silo_spot, and print them beside DEM, beside runs
 # whose v_s was matched to DEM's packing fraction, and beside two baselines. See README.md.
 #
-#   ./run.sh [FOLDER]      ten minutes on one core; dumps go to FOLDER (out-of-sample)
+#   ./run.sh [FOLDER]      five minutes on one core; dumps go to FOLDER (post)
 set -euo pipefail
 
 here=$(cd "$(dirname "$0")" && pwd)
-analysis=$here/../../../analysis
-lmp=${LMP:-$here/../../../build/bin/lmp}
-python=/usr/bin/python3
-mkdir -p "${1:-out-of-sample}"
-out=$(cd "${1:-out-of-sample}" && pwd)
+root=$here/../../..
+analysis=$root/analysis
+lmp=${LMP:-$root/build/bin/lmp}
+python=$("$root/scripts/python.sh")
+out=${1:-post}
+mkdir -p "$out"
+out=$(cd "$out" && pwd)
 
 # drain FOLDER [-var NAME VALUE]...: seeds 1 to 3
 drain() {
