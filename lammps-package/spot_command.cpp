@@ -197,7 +197,7 @@ const std::map<std::string, Reader>& readers() {
          c.spots.together = one_of<bool>(w, "steps", {{"poisson", false}, {"together", true}});
        }},
       {"persistence", [](SpotCommand& c, Words& w) { c.spots.persistence = w.not_negative("the persistence"); }},
-      {"dispersion", [](SpotCommand& c, Words& w) { c.spots.dispersion = w.not_negative("the dispersion"); }},
+      {"dilation", [](SpotCommand& c, Words& w) { c.spots.dilation = w.not_negative("the dilation"); }},
       {"threads", [](SpotCommand& c, Words& w) { c.threads = to_int(w.integer("the number of threads", 1)); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,
@@ -261,7 +261,7 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::I
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 4e-3 : 2.7e-3;
+  relaxation.tolerance = fast ? 4e-3 : 2.5e-3;
   relaxation.alpha = fast ? 1.0 : 0.8;
   relaxation.momentum = profile == spot::InfluenceProfile::uniform ? 0.5 : fast ? 0.6 : 0.7;
   return relaxation;
@@ -306,7 +306,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"diffusion", precise(spots.diffusion_length())},
           {"persistence", precise(spots.persistence)},
           {"speed", precise(spots.speed)},
-          {"dispersion", precise(spots.dispersion)},
+          {"dilation", precise(spots.dilation)},
           {"injection", precise(spots.injection_rate)},
           {"volume", precise(spots.fixed_volume)},
           {"steps", spots.together ? "together" : "poisson"},

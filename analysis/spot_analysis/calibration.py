@@ -22,8 +22,8 @@ from .counts import SLAB
 from .interval import IntervalView
 
 STEP_HEIGHT = 0.1  # d, dz of 2006: sets the move rate v_s / dz and the sideways step sqrt(4 b_s dz)
-UNITS = {"radius": "d", "influence": "1", "volume": "grains", "diffusion": "d", "speed": "d/tau", "injection": "1/tau"}
-SYMBOLS = {"radius": "R_s", "influence": "w", "volume": "<N>", "diffusion": "b_s", "speed": "v_s", "injection": "nu_s"}
+UNITS = {"radius": "d", "influence": "1", "volume": "grains", "diffusion": "d", "dilation": "1", "speed": "d/tau", "injection": "1/tau"}
+SYMBOLS = {"radius": "R_s", "influence": "w", "volume": "<N>", "diffusion": "b_s", "dilation": "c_0", "speed": "v_s", "injection": "nu_s"}
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,17 @@ class Measured:
 
     @property
     def speed(self):
-        """v_s: while nu_s w <N> = F grains a tau are missing for the time that spots need through the slab, Delta N = F
-        Delta z / v_s."""
+        """Mean speed of spots: while nu_s w <N> = F grains a tau are missing for the time that spots need through the slab,
+        Delta N = F Delta z / v_s."""
         return combine(lambda outflow, drop: outflow * (SLAB[1] - SLAB[0]) / drop, self.outflow, self.drop)
+
+    def pace(self, dilation):
+        """Their speed over v_s, if they climb at v_s (c / c_0)^2 where they take the share c of the volume (fix spot,
+        ``dilation``): c is that of the grains missing in the slab. 1 for an Estimate c_0 = 0, spots that climb at v_s."""
+        container = self.view.run.scene.container()
+        volume = 4 * container.half_width * container.half_depth * (SLAB[1] - SLAB[0])
+        return combine(lambda drop, c_0: np.where(c_0 > 0, (drop * np.pi / 6 / volume / np.where(c_0 > 0, c_0, 1))**2, 1.0),
+                       self.drop, dilation)
 
     def grains_in(self, radius):
         """<N> in a spot of the Estimate ``radius``."""
@@ -72,15 +80,16 @@ def measure(run, start=None, end=None, buffer=0.25):
 
 
 def parameters(measured, response):
-    """name -> Estimate of what gives what was ``measured``, with a ``calibration_response``: the five parameters, and the
-    number of grains <N> in a spot, by which nu_s was found."""
+    """name -> Estimate of what gives what was ``measured``, with a ``calibration_response``: the five parameters, the
+    number of grains <N> in a spot, by which nu_s was found, and the dilation c_0 at which spots climb at v_s."""
     diffusion = combine(np.divide, measured.spreading.diffusion, response["diffusion"])
     radius = combine(lambda shown, added, slope: RADIUS + (shown - added - RADIUS) / slope, measured.correlation.radius,
                      response["radius"], response["radius_slope"])
     influence = combine(lambda b_p, added, slope, size, share, b_s: (b_p - added - slope * (size - RADIUS)) / (share * b_s),
                         measured.diffusion.length, response["particle_diffusion"], response["diffusion_slope"], radius,
                         response["share"], diffusion)
-    speed = combine(np.divide, measured.speed, response["speed"])
+    speed = combine(lambda shown, ratio, pace: shown / (ratio * pace), measured.speed, response["speed"],
+                    measured.pace(response["dilation"]))
     for name, value in (("radius", radius), ("influence", influence), ("diffusion", diffusion), ("speed", speed)):
         if not value.is_determined(2.0):
             raise CalibrationError(f"{SYMBOLS[name]} is not determined: {float(value.value):.3g} +- {float(value.error):.2g} "
@@ -91,8 +100,8 @@ def parameters(measured, response):
     grains = measured.grains_in(radius)
     injection = combine(lambda outflow, kept, w, count: outflow / (kept * w * count), measured.outflow, response["outflow"],
                         influence, grains)
-    return {"radius": radius, "influence": influence, "volume": grains, "diffusion": diffusion, "speed": speed,
-            "injection": injection}
+    return {"radius": radius, "influence": influence, "volume": grains, "diffusion": diffusion,
+            "dilation": response["dilation"], "speed": speed, "injection": injection}
 
 
 def response_of(measured, put_in, slopes):
@@ -111,7 +120,7 @@ def response_of(measured, put_in, slopes):
             lambda b_p, share, slope: b_p - share * put_in["influence"] * put_in["diffusion"] - slope * (put_in["radius"] - RADIUS),
             measured.diffusion.length, slopes["share"], slopes["diffusion_slope"]),
         **{name: slopes[name] for name in SLOPES},
-        "speed": combine(lambda value: value / put_in["speed"], measured.speed),
+        "speed": combine(lambda value, pace: value / (put_in["speed"] * pace), measured.speed, measured.pace(slopes["dilation"])),
         "outflow": combine(lambda outflow: outflow / (put_in["injection"] * put_in["influence"] * count),
                            measured.outflow),
     }

@@ -11,7 +11,7 @@ from .calibration_estimate import combine
 from .counts import SLAB
 from .particle_diffusion import DROPS
 
-IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "speed": "*v_d/v_tau", "injection": "/v_tau"}
+IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "dilation": "", "speed": "*v_d/v_tau", "injection": "/v_tau"}
 
 
 def described(estimate, unit):
@@ -22,7 +22,7 @@ def described(estimate, unit):
 
 
 def table(parameters, uncorrected):
-    """Lines of text: the five parameters with errors, and what 2006's formulas give."""
+    """Lines of text: the parameters with errors, and what 2006's formulas give."""
     lines = [f"{'':10} {'value':>10} {'+-':>9}   {'as 2006':>10} {'+-':>9}   unit"]
     for name, unit in UNITS.items():
         one, other = parameters[name], uncorrected[name]

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a spot run shows against what was put into it, so that calibration can take the difference out.
 
-    R_s shown = RADIUS + radius + radius_slope (R_s - RADIUS)     b_s shown = b_s * diffusion     v_s shown = v_s * speed
+    R_s shown = RADIUS + radius + radius_slope (R_s - RADIUS)     b_s shown = b_s * diffusion
+    v_s shown = speed * v_s (c / dilation)^2, c being the share of the volume that is missing, or speed * v_s without dilation
     b_p = share * w b_s + particle_diffusion + diffusion_slope (R_s - RADIUS)
     F = outflow * nu_s w <N>
 
@@ -36,16 +37,16 @@ from .calibration_estimate import Estimate
 # (value, standard error)
 FINE_SHARE = (0.70, 0.02)  # dz of 0.1 to 0.2 d
 RADIUS = 2.6  # d
-SLOPES = ("radius_slope", "diffusion_slope", "share")  # what one run cannot tell
-FREE = {"radius_slope": (1.0, 0.0), "diffusion_slope": (0.0, 0.0)}  # shown as it is, whatever R_s
+SLOPES = ("radius_slope", "diffusion_slope", "share", "dilation")  # what one run cannot tell
+FREE = {"radius_slope": (1.0, 0.0), "diffusion_slope": (0.0, 0.0), "dilation": (0.0, 0.0)}  # shown as it is, whatever R_s and c
 STORED = {
     "2006": {**FREE, "radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": (1.0, 0.0), "particle_diffusion": (0.0, 0.0),
              "speed": (1.0, 0.0), "outflow": (1.0, 0.0)},
     "unrelaxed": {**FREE, "radius": (0.0, 0.0), "diffusion": (1.0, 0.0), "share": FINE_SHARE, "particle_diffusion": (0.0, 0.0),
                   "speed": (1.0, 0.0), "outflow": (1.0, 0.0)},
     "windowed": {"radius": (0.41, 0.06), "radius_slope": (0.89, 0.08), "diffusion": (0.998, 0.014), "share": (0.33, 0.05),
-                 "particle_diffusion": (1.93e-3, 0.12e-3), "diffusion_slope": (0.78e-3, 0.10e-3), "speed": (1.038, 0.024),
-                 "outflow": (0.984, 0.018)},
+                 "particle_diffusion": (1.93e-3, 0.12e-3), "diffusion_slope": (0.78e-3, 0.10e-3), "dilation": (0.03, 0.0),
+                 "speed": (1.19, 0.03), "outflow": (0.984, 0.018)},
     "time_ordered": {**FREE, "radius": (0.31, 0.08), "diffusion": (1.0, 0.01), "share": FINE_SHARE,
                      "particle_diffusion": (2.8e-3, 0.3e-3), "speed": (1.03, 0.02), "outflow": (0.90, 0.01)},
 }

@@ -28,6 +28,7 @@ inline void append(Bytes& bytes, const Spot& spot) {
   append(bytes, spot.next_step);
   append(bytes, spot.turn);
   append(bytes, spot.chance);
+  append(bytes, spot.pace);
 }
 
 inline Spot take_spot(ByteReader& reader) {
@@ -38,6 +39,7 @@ inline Spot take_spot(ByteReader& reader) {
   spot.next_step = reader.take<double>();
   spot.turn = reader.take<double>();
   spot.chance = reader.take<double>();
+  spot.pace = reader.take<double>();
   return spot;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "spot/dilation_field.hpp"
 #include "spot/errors.hpp"
 
 namespace spot {
@@ -21,6 +22,13 @@ double SpotParameters::spot_volume(double packing_fraction) const {
   return influence * mean_share() * packing_fraction * 4.0 / 3.0 * pi * radius * radius * radius;
 }
 
+double SpotParameters::missing_volume(double diameter) const {
+  const double pi = 3.14159265358979323846;
+  return fixed_volume > 0.0 ? influence * fixed_volume * pi / 6.0 * diameter * diameter * diameter : spot_volume(0.58);
+}
+
+double SpotParameters::fastest() const { return dilation > 0.0 ? speed * DilationField::fastest : speed; }
+
 double SpotParameters::equivalent_radius() const { return radius * std::cbrt(mean_share()); }
 
 void SpotParameters::validate() const {
@@ -29,10 +37,10 @@ void SpotParameters::validate() const {
   if (influence >= 1.0) throw InvalidParameter(message("spot influence is ", influence, " but must be below 1"));
   if (!(persistence >= 0.0 && persistence < 1.0))
     throw InvalidParameter(message("spot persistence is ", persistence, " but must be from 0 to below 1"));
-  if (!(dispersion >= 0.0 && dispersion <= 0.95))
-    throw InvalidParameter(message("spot dispersion is ", dispersion, " but must be from 0 to 0.95"));
-  if (dispersion > 0.0 && together)
-    throw InvalidParameter(message("spot dispersion is ", dispersion, " but must be 0 for spots that step together"));
+  if (!(dilation >= 0.0 && dilation < 1.0))
+    throw InvalidParameter(message("spot dilation is ", dilation, " but must be from 0 (off) to below 1"));
+  if (dilation > 0.0 && together)
+    throw InvalidParameter(message("spot dilation is ", dilation, " but must be 0 for spots that step together"));
   require_positive("spot step width", step_width);
   require_positive("spot step height", step_height);
   require_positive("spot speed", speed);

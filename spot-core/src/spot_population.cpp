@@ -2,6 +2,7 @@
 #include "spot/spot_population.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "packed.hpp"
 
@@ -16,15 +17,21 @@ bool later(const Spot& a, const Spot& b) {
 
 }  // namespace
 
-SpotPopulation::SpotPopulation(const SpotParameters& parameters, const Container& container)
-    : walk_(parameters, container), next_birth_(walk_.time_before_birth(0)) {}
+SpotPopulation::SpotPopulation(const SpotParameters& parameters, const Container& container, double diameter)
+    : walk_(parameters, container),
+      next_birth_(walk_.time_before_birth(0)),
+      dilation_(parameters, container, diameter),
+      interval_(parameters.dilation > 0.0 ? 0.1 * parameters.radius / parameters.speed : 0.0) {}
 
-SpotPopulation::SpotPopulation(const SpotParameters& parameters, const Container& container, ByteReader& saved)
-    : walk_(parameters, container) {
+SpotPopulation::SpotPopulation(const SpotParameters& parameters, const Container& container, double diameter,
+                               ByteReader& saved)
+    : SpotPopulation(parameters, container, diameter) {
   born_ = saved.take<std::int64_t>();
   next_birth_ = saved.take<double>();
   for (auto spots = saved.take<std::uint64_t>(); spots > 0; --spots) spots_.push_back(take_spot(saved));
   std::make_heap(spots_.begin(), spots_.end(), later);
+  intervals_ = saved.take<std::int64_t>();
+  dilation_.restore(saved);
 }
 
 void SpotPopulation::save(Bytes& bytes) const {
@@ -32,6 +39,8 @@ void SpotPopulation::save(Bytes& bytes) const {
   append(bytes, next_birth_);
   append(bytes, static_cast<std::uint64_t>(spots_.size()));
   for (const Spot& spot : spots_) append(bytes, spot);
+  append(bytes, intervals_);
+  dilation_.save(bytes);
 }
 
 void SpotPopulation::settle() {
@@ -41,13 +50,43 @@ void SpotPopulation::settle() {
 
 void SpotPopulation::give_birth(const Container& container) {
   spots_.push_back(walk_.birth(born_, next_birth_, container));
+  if (intervals_ > 0) walk_.set_pace(spots_.back(), next_birth_, dilation_.pace(spots_.back().position));
   std::push_heap(spots_.begin(), spots_.end(), later);
   next_birth_ += walk_.time_before_birth(++born_);
 }
 
+/// When paces are to be set next.
+double SpotPopulation::next_setting() const {
+  return interval_ > 0.0 ? static_cast<double>(intervals_) * interval_ : std::numeric_limits<double>::infinity();
+}
+
+/// When a spot is born or steps next.
+double SpotPopulation::next_event() const {
+  return spots_.empty() ? next_birth_ : std::min(next_birth_, spots_.front().next_step);
+}
+
+void SpotPopulation::set_paces(double now) {
+  std::vector<Vector3> places;
+  for (const Spot& spot : spots_) places.push_back(spot.position);
+  Alone alone;
+  dilation_.count(places, alone);
+  for (Spot& spot : spots_) walk_.set_pace(spot, now, dilation_.pace(spot.position));
+  std::make_heap(spots_.begin(), spots_.end(), later);
+}
+
 std::optional<Move> SpotPopulation::next_move(double time, const Container& container) {
   settle();
-  while (next_birth_ <= time && (spots_.empty() || next_birth_ <= spots_.front().next_step)) give_birth(container);
+  while (true) {
+    const double event = next_event();
+    if (next_setting() <= std::min(event, time)) {
+      set_paces(next_setting());
+      ++intervals_;
+    } else if (event <= time && event == next_birth_) {
+      give_birth(container);
+    } else {
+      break;
+    }
+  }
   if (spots_.empty() || spots_.front().next_step > time) return std::nullopt;
   std::pop_heap(spots_.begin(), spots_.end(), later);
   in_hand_ = true;

@@ -34,13 +34,6 @@ Vector3 step_vector(const SpotParameters& p, double uniform) {
   }
 }
 
-/// A spot's mean waiting time over that of all: 1 - D, and an exponential share with the mean D. All means stay what
-/// they are without: spots climb a height in the same time, on average, and as many are on their way.
-double slowness(const SpotParameters& p, std::int64_t id) {
-  if (p.dispersion == 0.0) return 1.0;
-  return 1.0 - p.dispersion + exponential(numbers_of_birth(p, id)[3], 1.0 / p.dispersion);
-}
-
 /// The number that gives the step to the other side.
 double opposite(double uniform) {
   const bool odd = static_cast<int>(4.0 * uniform) % 2 == 1;
@@ -75,11 +68,16 @@ void SpotWalk::draw_next_step(Spot& spot) const {
   spot.chance = numbers[2];
   const double mean = parameters_.mean_waiting_time();
   if (!parameters_.together)
-    spot.next_step += exponential(numbers[0], parameters_.move_rate()) * slowness(parameters_, spot.id);
+    spot.next_step += exponential(numbers[0], parameters_.move_rate()) / spot.pace;
   else if (spot.steps == 0)
     spot.next_step = (std::floor(spot.next_step / mean) + 1.0) * mean;
   else
     spot.next_step = std::nearbyint(spot.next_step / mean + 1.0) * mean;
+}
+
+void SpotWalk::set_pace(Spot& spot, double time, double pace) const {
+  spot.next_step = time + (spot.next_step - time) * (spot.pace / pace);
+  spot.pace = pace;
 }
 
 Move SpotWalk::step(Spot& spot, const Container& container) const {

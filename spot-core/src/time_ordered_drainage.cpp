@@ -23,7 +23,7 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
                                          Packing packing)
     : Drainage(spots, relaxation, limits, std::move(container), packing.diameter()),
       packing_(std::move(packing)),
-      population_(spots, *container_),
+      population_(spots, *container_, packing_.diameter()),
       relaxation_(relaxation) {
   require_valid_start();
 }
@@ -38,7 +38,7 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
                                          double diameter, double extent, ByteReader saved)
     : Drainage(spots, relaxation, limits, std::move(container), diameter),
       packing_(diameter, extent, take_grains(saved)),
-      population_(spots, *container_, saved),
+      population_(spots, *container_, diameter, saved),
       relaxation_(relaxation) {
   counters_ = saved.take<Counters>();
   relaxed_everywhere_ = saved.take<std::int64_t>();
@@ -138,6 +138,7 @@ void TimeOrderedDrainage::replace_grains(const std::vector<Grain>& grains) {
 void TimeOrderedDrainage::replace_container(std::shared_ptr<const Container> container) {
   container_ = std::move(container);
   packing_.mark_near_walls(*container_);
+  population_.replace_container(*container_);
 }
 
 void TimeOrderedDrainage::visit_grains(const std::function<void(const Grain&)>& visit) const {

@@ -94,7 +94,8 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       window_(positive_window(window)),
       due_(moves_until_due(spots, relaxation.tolerance, diameter)),
       packing_(diameter, extent, limits.outlet, grains, *container_, communicator_),
-      walk_(spots, *container_) {
+      walk_(spots, *container_),
+      dilation_(spots, *container_, diameter) {
   next_birth_ = walk_.time_before_birth(0);
   TiledPacking::require_radius(spots.radius, diameter);
   require_fitting_window();
@@ -104,7 +105,8 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
 void WindowedDrainage::advance_to(double time) {
   // A time that was meant to be a whole number of windows may be off by rounding.
   while (static_cast<double>(windows_ + 1) * window_ <= time * (1.0 + 1e-12)) {
-    const double until = static_cast<double>(++windows_) * window_;
+    const double now = static_cast<double>(windows_) * window_, until = static_cast<double>(++windows_) * window_;
+    set_paces(now);
     give_birth(until);
     walk(until);
     share_turns();
@@ -119,11 +121,25 @@ void WindowedDrainage::advance_to(double time) {
   }
 }
 
+/// Where spots are crowded they climb faster, all through a window as at its start.
+void WindowedDrainage::set_paces(double now) {
+  if (parameters_.dilation == 0.0) return;
+  std::vector<Vector3> places;
+  for (const Walker& walker : walkers_)
+    if (!walker.removed) places.push_back(walker.spot.position);
+  dilation_.count(places, *communicator_);
+  for (Walker& walker : walkers_)
+    if (!walker.removed) walk_.set_pace(walker.spot, now, dilation_.pace(walker.spot.position));
+}
+
 /// Every rank sees all births, and keeps its own.
 void WindowedDrainage::give_birth(double until) {
   while (next_birth_ <= until) {
-    const Spot spot = walk_.birth(born_, next_birth_, container());
-    if (here(spot.position)) walkers_.push_back({spot, false});
+    Spot spot = walk_.birth(born_, next_birth_, container());
+    if (here(spot.position)) {
+      if (parameters_.dilation > 0.0) walk_.set_pace(spot, next_birth_, dilation_.pace(spot.position));
+      walkers_.push_back({spot, false});
+    }
     next_birth_ += walk_.time_before_birth(++born_);
   }
 }
@@ -187,7 +203,9 @@ std::vector<Spot> WindowedDrainage::spots() const {
   return live;
 }
 
-std::size_t WindowedDrainage::memory() const { return packing_.memory() + bytes_in(walkers_, turns_, moves_); }
+std::size_t WindowedDrainage::memory() const {
+  return packing_.memory() + dilation_.memory() + bytes_in(walkers_, turns_, moves_);
+}
 
 void WindowedDrainage::relax() {
   double overlap = 0.0;
@@ -213,6 +231,7 @@ void WindowedDrainage::replace_grains(const std::vector<Grain>& grains) {
 void WindowedDrainage::replace_container(std::shared_ptr<const Container> container) {
   container_ = std::move(container);
   packing_.mark_near_walls(*container_);
+  dilation_.replace_container(*container_);
 }
 
 }  // namespace spot

@@ -16,7 +16,7 @@ from conftest import ANALYSIS
 
 ROOT = ANALYSIS.parent
 LMP = os.environ.get("SPOT_LMP", str(ROOT / "build" / "bin" / "lmp"))
-PLANTED = {"radius": 2.4, "influence": 2.2e-3, "volume": 61.5, "diffusion": 1.15, "speed": 3.0, "injection": 540.0}
+PLANTED = {"radius": 2.4, "influence": 2.2e-3, "volume": 61.5, "diffusion": 1.15, "dilation": 0.03, "speed": 2.6, "injection": 540.0}
 DURATION = 88.0  # tau
 
 

@@ -50,7 +50,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   const SpotCommand c = parse(
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
-      "accuracy fast momentum 0.3 volume 77.5 persistence 0.4 dispersion 0.3 steps together threads 4 peratom yes");
+      "accuracy fast momentum 0.3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -60,7 +60,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.diffusion_length, 1.5);
   EXPECT_EQ(c.spots.step_height, 0.2);
   EXPECT_EQ(c.spots.persistence, 0.4);
-  EXPECT_EQ(c.spots.dispersion, 0.3);
+  EXPECT_EQ(c.spots.dilation, 0.03);
   EXPECT_EQ(c.spots.speed, 2.0);
   EXPECT_EQ(c.spots.injection_rate, 300.0);
   EXPECT_EQ(c.spots.seed, 17U);
@@ -313,7 +313,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "poisson",
                                                "together",
                                                "persistence",
-                                               "dispersion",
+                                               "dilation",
                                                "threads",
                                                "tol",
                                                "chance",
@@ -425,7 +425,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"seed", std::to_string(c.spots.seed)},
       {"volume", in(c.spots.fixed_volume, "")},
       {"persistence", in(c.spots.persistence, "")},
-      {"dispersion", in(c.spots.dispersion, "")},
+      {"dilation", in(c.spots.dilation, "")},
       {"steps", c.spots.together ? "together" : "poisson"},
       {"threads", std::to_string(c.threads)},
       {"outlet", *c.outlet == c.orifice->centre.z() ? "the height of the orifice" : "elsewhere"},

@@ -63,7 +63,7 @@ class PlainDrainage {
         relaxation_(relaxation),
         outlet_(outlet),
         container_(std::move(container)),
-        population_(spots, *container_),
+        population_(spots, *container_, 1.0),
         q_(spot::Quantum(1.0, extent).length()),
         grains_(grains) {
     for (Grain& grain : grains_)

@@ -76,14 +76,14 @@ TEST(ParametersUnit, PersistenceMustBeBelowOne) {
   }
 }
 
-TEST(ParametersUnit, DispersionMustLeaveSpotsASpeed) {
+TEST(ParametersUnit, DilationIsAShare) {
   SpotParameters spots = scenes::paper_spots();
-  for (const double wrong : {-0.1, 0.96, 1.0 / 0.0, std::nan("")}) {
-    spots.dispersion = wrong;
+  for (const double wrong : {-0.1, 1.0, 1.0 / 0.0, std::nan("")}) {
+    spots.dilation = wrong;
     EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }),
-                AllOf(HasSubstr("dispersion"), HasSubstr("from 0 to 0.95")));
+                AllOf(HasSubstr("dilation"), HasSubstr("from 0 (off) to below 1")));
   }
-  spots.dispersion = 0.95;
+  spots.dilation = 0.95;
   EXPECT_NO_THROW(spots.validate());
   spots.together = true;
   EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }), HasSubstr("step together"));

@@ -52,10 +52,11 @@ class RandomScene {
     return spot::message("scene ", seed_, ": ", kind_, ", ", grains_.size(), " grains, d = ", d, ", orifice ",
                          silo_->orifice().radius / d, ", R_s = ", spots_.radius / d, ", w = ", spots_.influence,
                          ", dx = ", spots_.step_width / d, ", dz = ", spots_.step_height / d,
-                         ", nu_s = ", spots_.injection_rate, ", volume ", spots_.fixed_volume,
-                         spots_.together ? ", together" : "", ", alpha ", relaxation_.alpha, ", momentum ",
-                         relaxation_.momentum, ", tolerance ", relaxation_.tolerance, ", ", windows_, " windows of ",
-                         window_, time_ordered_ ? ", time-ordered, every " : ", windowed, every ", relaxation_.every);
+                         ", nu_s = ", spots_.injection_rate, ", volume ", spots_.fixed_volume, ", dilation ",
+                         spots_.dilation, spots_.together ? ", together" : "", ", alpha ", relaxation_.alpha,
+                         ", momentum ", relaxation_.momentum, ", tolerance ", relaxation_.tolerance, ", ", windows_,
+                         " windows of ", window_, time_ordered_ ? ", time-ordered, every " : ", windowed, every ",
+                         relaxation_.every);
   }
 
  private:
@@ -170,6 +171,7 @@ class RandomScene {
     const double steps = 1.0 + 0.5 * time * spots_.move_rate();  // a spot
     const double budget = time_ordered_ ? 1500.0 : 10000.0;
     spots_.injection_rate = std::min(births, budget / steps) / time;
+    if (!spots_.together && chance(0.4)) spots_.dilation = log_uniform(1e-3, 0.5);
     if (time_ordered_) return;
     // Grains in the orifice go some way in a window, at most a diameter.
     const double clock = spots_.together ? std::max(window_, spots_.mean_waiting_time()) : window_;

@@ -28,7 +28,7 @@ constexpr double height = 16.0;
 
 std::vector<Grain> filling() { return scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, height}, 0.01, 2); }
 
-/// With fixed volume, momentum, and many moves in a window.
+/// With fixed volume, dilation, momentum, and many moves in a window.
 struct Scene {
   spot::SpotParameters spots = scenes::paper_spots();
   spot::RelaxationParameters relaxation;
@@ -39,6 +39,7 @@ struct Scene {
     spots.step_height = 0.8;
     spots.step_width = spot::step_width_for(1.25, spots.step_height);
     spots.fixed_volume = 77;
+    spots.dilation = 0.03;
     spots.injection_rate = 120.0;
     relaxation.tolerance = 3e-3;
     relaxation.momentum = 0.6;

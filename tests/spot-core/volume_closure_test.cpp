@@ -45,7 +45,7 @@ TEST(VolumeClosureSlow, FluxThroughEveryHeightEqualsOutflowAndWhatTheSpotsCarry)
                                Packing(1.0, 100.0, scenes::dense_grains({-7.5, -3.5, 0.5}, {7.5, 3.5, 30.0}, 0.01, 1)));
 
   // The same moves again, one at a time, to know how many grains each of them moved.
-  SpotPopulation moves(spots, *silo);
+  SpotPopulation moves(spots, *silo, 1.0);
   double moved_in_bulk = 0.0, bulk_moves = 0.0;
   const auto advance_to = [&](double time) {
     while (const auto move = moves.next_move(time, *silo)) {

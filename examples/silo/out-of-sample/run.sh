@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-or-later
 #
-# Drain silos that took no part in the calibration, with the parameters of ../in.silo_spot, and print them beside DEM, beside runs
-# whose v_s was matched to DEM's packing fraction, and beside two baselines. See README.md.
+# Drain silos that took no part in the calibration, with the parameters of ../in.silo_spot, and print them beside DEM, beside
+# spots that all climb at 3.0 d/tau, and beside two baselines. See README.md.
 #
 #   ./run.sh [FOLDER]      five minutes on one core; dumps go to FOLDER (post)
 set -euo pipefail
@@ -27,23 +27,23 @@ drain() {
   done
 }
 
-# table NAME OUTFLOW: DEM in NAME.npz; runs in NAME.SEED and NAME.matched.SEED; OUTFLOW is what grains of the kinematic model are given
+# table NAME OUTFLOW: DEM in NAME.npz; runs in NAME.SEED and NAME.constant.SEED; OUTFLOW is what grains of the kinematic model are given
 table() {
   local packing=$out/$1.1/drain.0.dump.zst
   "$python" "$analysis/baseline.py" nothing "$packing" --time 50 -o "$out/$1.nothing"
   "$python" "$analysis/baseline.py" kinematic "$packing" --time 50 --outflow "$2" -o "$out/$1.kinematic"
   "$python" "$analysis/side_by_side.py" "$here/$1.npz" "frozen=$out/$1.1,$out/$1.2,$out/$1.3" \
-    "v_s matched=$out/$1.matched.1,$out/$1.matched.2,$out/$1.matched.3" "nothing=$out/$1.nothing" "kinematic=$out/$1.kinematic" \
+    "constant v_s=$out/$1.constant.1,$out/$1.constant.2,$out/$1.constant.3" "nothing=$out/$1.nothing" "kinematic=$out/$1.kinematic" \
     --from 20 --to 50
 }
 
 d_per_tau=0.171552  # m/s
 
 drain walls-16
-drain walls-16.matched -var speed "$(awk "BEGIN { print 3.7 * $d_per_tau }")"
+drain walls-16.constant -var dilation 0 -var speed "$(awk "BEGIN { print 3.0 * $d_per_tau }")"
 table walls-16 69.6
 
 # Beverloo with k = 1.4: ((6.5 - 1.4) / (8 - 1.4))^2.5 of 368 births and 69.6 grains a tau
 drain orifice-6.5 -var orifice 6.5 -var births 193
-drain orifice-6.5.matched -var orifice 6.5 -var births 193 -var speed "$(awk "BEGIN { print 1.6 * $d_per_tau }")"
+drain orifice-6.5.constant -var orifice 6.5 -var births 193 -var dilation 0 -var speed "$(awk "BEGIN { print 3.0 * $d_per_tau }")"
 table orifice-6.5 36.5

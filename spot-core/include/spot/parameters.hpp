@@ -28,8 +28,9 @@ struct SpotParameters {
   InfluenceProfile profile = InfluenceProfile::uniform;
   /// p: the chance that a step goes the way of the last one, without drawing (2006, section V: a persistent walk).
   double persistence = 0.0;
-  /// D: standard deviation of spots' mean waiting times over their mean. 0: all climb equally fast.
-  double dispersion = 0.0;
+  /// c_0: spots climb at v_s where they take this share of the volume, and elsewhere in proportion to that share
+  /// (DilationField). 0: they climb at v_s everywhere (2006).
+  double dilation = 0.0;
   bool together = false;  ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
   std::uint64_t seed = 1;
 
@@ -38,7 +39,7 @@ struct SpotParameters {
   /// dz / v_s
   double mean_waiting_time() const { return step_height / speed; }
   /// The mean drift speed of the fastest spot there can be (length / time).
-  double fastest() const { return speed / (1.0 - dispersion); }
+  double fastest() const;
   /// b_s = Var(x) / (2 z) of the walk. Half of the steps go along x, so Var(dx) = dx^2 / 2 a step; steps that are k
   /// apart have a correlation of p^k, which adds up to b_s = dx^2 / (4 dz) (1 + p) / (1 - p) (length).
   double diffusion_length() const {
@@ -55,6 +56,9 @@ struct SpotParameters {
   double equivalent_radius() const;
   /// V_s, the free volume that one spot carries through a packing of this packing fraction (length^3).
   double spot_volume(double packing_fraction) const;
+  /// The grains' own volume that one spot takes out of the packing around it: that of w N grains, with a fixed volume,
+  /// or of as many as it encloses at a packing fraction of 0.58 (length^3).
+  double missing_volume(double diameter) const;
 
   /// Throws InvalidParameter that names the first number outside its range.
   void validate() const;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "spot/bytes.hpp"
+#include "spot/dilation_field.hpp"
 #include "spot/spot_walk.hpp"
 
 namespace spot {
@@ -14,10 +15,10 @@ namespace spot {
 class SpotPopulation {
  public:
   /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
-  SpotPopulation(const SpotParameters& parameters, const Container& container);
+  SpotPopulation(const SpotParameters& parameters, const Container& container, double diameter);
 
   /// A population that goes on from what save() appended.
-  SpotPopulation(const SpotParameters& parameters, const Container& container, ByteReader& saved);
+  SpotPopulation(const SpotParameters& parameters, const Container& container, double diameter, ByteReader& saved);
 
   void save(Bytes& bytes) const;
 
@@ -27,11 +28,17 @@ class SpotPopulation {
   /// Removes the spot whose move was handed out last: nothing is left above it.
   void remove_last_moved();
 
+  /// Other walls; the spots stay.
+  void replace_container(const Container& container) { dilation_.replace_container(container); }
+
   const std::vector<Spot>& spots() const { return spots_; }
   std::int64_t born() const { return born_; }
 
  private:
   void give_birth(const Container& container);
+  double next_event() const;
+  double next_setting() const;
+  void set_paces(double now);
   void settle();
 
   SpotWalk walk_;
@@ -39,6 +46,11 @@ class SpotPopulation {
   bool in_hand_ = false;     // is the spot that moved last still outside the heap's order?
   double next_birth_;
   std::int64_t born_ = 0;
+
+  // Paces are set at every whole multiple of the interval, if at all; in it a spot climbs a tenth of its radius.
+  DilationField dilation_;
+  double interval_;
+  std::int64_t intervals_ = 0;  // begun
 };
 
 }  // namespace spot

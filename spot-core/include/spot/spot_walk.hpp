@@ -17,6 +17,7 @@ struct Spot {
   double next_step;     ///< time of the step to come
   double turn = 0.0;    ///< a uniform random number, for its direction
   double chance = 0.0;  ///< another, for whoever draws lots
+  double pace = 1.0;    ///< its speed over v_s
 };
 
 /// How spots are born and walk. Walks do not look at grains, and there is no state but the spot: all draws follow from
@@ -34,6 +35,9 @@ class SpotWalk {
   double time_before_birth(std::int64_t id) const;
 
   Spot birth(std::int64_t id, double time, const Container& container) const;
+
+  /// From `time` on, the spot goes at this pace: what is left of its waiting time gets shorter or longer.
+  void set_pace(Spot& spot, double time, double pace) const;
 
   /// Carries out the next step of a spot and draws the time of the one after.
   Move step(Spot& spot, const Container& container) const;

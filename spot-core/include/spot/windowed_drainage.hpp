@@ -6,6 +6,7 @@
 
 #include "spot/bytes.hpp"
 #include "spot/communicator.hpp"
+#include "spot/dilation_field.hpp"
 #include "spot/drainage.hpp"
 #include "spot/tiled_packing.hpp"
 
@@ -77,6 +78,7 @@ class WindowedDrainage : public Drainage {
   /// Throws InvalidParameter if relaxation could not follow what spots do in a window.
   void require_fitting_window() const;
   bool here(const Vector3& position) const { return packing_.owner(position.z()) == communicator_->rank(); }
+  void set_paces(double now);
   void give_birth(double until);
   void walk(double until);
   void share_turns();
@@ -103,6 +105,7 @@ class WindowedDrainage : public Drainage {
   double next_birth_ = 0.0;
   TiledPacking packing_;
   SpotWalk walk_;
+  DilationField dilation_;
 
   // Of the window at hand.
   std::vector<Turn> turns_;  // in the order of (spot, number)

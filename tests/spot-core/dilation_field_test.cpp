@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/dilation_field.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "scenes.hpp"
+
+namespace {
+
+using spot::Alone;
+using spot::ByteReader;
+using spot::Bytes;
+using spot::DilationField;
+using spot::SpotParameters;
+using spot::Vector3;
+
+SpotParameters dilating_spots() {
+  SpotParameters spots = scenes::paper_spots();
+  spots.radius = 3.0;
+  spots.fixed_volume = 40.0;
+  spots.dilation = 0.03;
+  return spots;
+}
+
+/// The share of spots that are `spacing` apart along each axis.
+double share(const SpotParameters& spots, double spacing) { return spots.missing_volume(1.0) / std::pow(spacing, 3); }
+
+/// Spots on a lattice that fills the box, half a spacing from its faces.
+std::vector<Vector3> lattice(const Vector3& low, const Vector3& high, double spacing) {
+  std::vector<Vector3> spots;
+  for (double x = low.x() + 0.5 * spacing; x < high.x(); x += spacing)
+    for (double y = low.y() + 0.5 * spacing; y < high.y(); y += spacing)
+      for (double z = low.z() + 0.5 * spacing; z < high.z(); z += spacing) spots.emplace_back(x, y, z);
+  return spots;
+}
+
+TEST(DilationFieldUnit, ASpotTakesTheVolumeOfItsGrains) {
+  SpotParameters spots = dilating_spots();
+  EXPECT_DOUBLE_EQ(spots.missing_volume(1.0), 2.5e-3 * 40.0 * scenes::pi / 6.0);
+  EXPECT_DOUBLE_EQ(spots.missing_volume(0.003), spots.missing_volume(1.0) * std::pow(0.003, 3));
+  spots.fixed_volume = 0.0;
+  EXPECT_DOUBLE_EQ(spots.missing_volume(1.0), spots.spot_volume(0.58));
+}
+
+/// Also where walls cut lattice cells: in a box, 10.3 d wide, and in a cylinder.
+TEST(DilationFieldAnalytic, EvenSpotsDilateEvenlyUpToTheWalls) {
+  const SpotParameters spots = dilating_spots();
+  Alone alone;
+  const double spacing = 10.3 / 40;
+  const auto box = scenes::small_silo(5.15, 5.15);
+  const auto everywhere = lattice({-5.15, -5.15, 0.0}, {5.15, 5.15, 30.0}, spacing);
+  DilationField field(spots, *box, 1.0);
+  field.count(everywhere, alone);
+  for (const Vector3& place : {Vector3(0, 0, 10), Vector3(5.1, 0, 12.3), Vector3(-5.1, 5.1, 8.0), Vector3(1, -2, 0.5)})
+    EXPECT_NEAR(field.at(place) / share(spots, spacing), 1.0, 0.03) << place.transpose();
+
+  const auto pipe = spot::cylinder_silo(0.0, 0.0, 5.15, spot::Orifice{{0, 0, 0}, 4.0}, spot::SpotBuffers{1.0, 2.6});
+  std::vector<Vector3> inside;
+  for (const Vector3& place : everywhere)
+    if (place.head<2>().norm() < 5.15) inside.push_back(place);
+  DilationField round(spots, *pipe, 1.0);
+  round.count(inside, alone);
+  for (const Vector3& place : {Vector3(0, 0, 10), Vector3(5.1, 0, 12.3), Vector3(-3.6, 3.6, 8.0)})
+    EXPECT_NEAR(round.at(place) / share(spots, spacing), 1.0, 0.04) << place.transpose();
+}
+
+TEST(DilationFieldAnalytic, OneSpotDilatesByItsVolumeInAll) {
+  const SpotParameters spots = dilating_spots();
+  const auto space = scenes::empty_space();
+  Alone alone;
+  for (const Vector3& place : {Vector3(0.0, 0.0, 0.0), Vector3(0.7, -1.1, 2.9), Vector3(1.5, 1.5, 1.5)}) {
+    DilationField field(spots, *space, 1.0);
+    field.count({place}, alone);
+    double sum = 0.0;
+    const double step = 0.5;
+    for (const Vector3& at : lattice(place - Vector3::Constant(10.0), place + Vector3::Constant(10.0), step))
+      sum += field.at(at) * step * step * step;
+    EXPECT_NEAR(sum / spots.missing_volume(1.0), 1.0, 0.01);
+  }
+}
+
+TEST(DilationFieldUnit, PaceIsTheSquareOfTheDilationWithinBounds) {
+  SpotParameters spots = dilating_spots();
+  const auto silo = scenes::small_silo(6.0, 6.0);
+  const double spacing = 12.0 / 20;
+  const auto places = lattice({-6, -6, 0}, {6, 6, 30}, spacing);
+  Alone alone;
+  for (const double ratio : {0.1, 0.5, 1.0, 1.7, 3.0}) {
+    spots.dilation = share(spots, spacing) / ratio;
+    DilationField field(spots, *silo, 1.0);
+    field.count(places, alone);
+    const double expected = ratio < 0.3 ? DilationField::slowest : ratio > 2.0 ? DilationField::fastest : ratio * ratio;
+    EXPECT_NEAR(field.pace({0.0, 0.0, 15.0}) / expected, 1.0, 0.05) << ratio;
+  }
+}
+
+TEST(DilationFieldUnit, NoSpotsAndNoRoom) {
+  const auto silo = scenes::small_silo(6.0, 6.0);
+  Alone alone;
+  DilationField field(dilating_spots(), *silo, 1.0);
+  EXPECT_EQ(field.pace({0, 0, 15}), DilationField::slowest);
+  field.count({}, alone);
+  EXPECT_EQ(field.at({0, 0, 15}), 0.0);
+  EXPECT_EQ(field.pace({0, 0, -20}), DilationField::fastest);  // where no grain can be
+}
+
+TEST(DilationFieldUnit, OtherWallsLeaveOtherVolumes) {
+  const SpotParameters spots = dilating_spots();
+  const auto wide = scenes::small_silo(20.0, 20.0), narrow = scenes::small_silo(5.0, 5.0);
+  Alone alone;
+  DilationField field(spots, *wide, 1.0);
+  field.count({{4.9, 0.0, 15.0}}, alone);
+  const double before = field.at({4.9, 0.0, 15.0});
+  field.replace_container(*narrow);
+  EXPECT_GT(field.at({4.9, 0.0, 15.0}), 1.3 * before);
+}
+
+TEST(DilationFieldInvariance, SavedCountsComeBack) {
+  const auto silo = scenes::small_silo(6.0, 6.0);
+  Alone alone;
+  DilationField field(dilating_spots(), *silo, 1.0), other(dilating_spots(), *silo, 1.0);
+  field.count(lattice({-5, -4, 1}, {3, 4, 20}, 0.9), alone);
+  Bytes bytes;
+  field.save(bytes);
+  ByteReader reader(bytes);
+  other.restore(reader);
+  EXPECT_TRUE(reader.at_end());
+  for (const Vector3& place : lattice({-6, -6, 0}, {6, 6, 24}, 1.7)) EXPECT_EQ(field.at(place), other.at(place));
+  bytes[0] = static_cast<char>(bytes[0] + 1);  // the first node counted
+  ByteReader damaged(bytes);
+  EXPECT_THAT(scenes::text_of<spot::InvalidState>([&] { other.restore(damaged); }), testing::HasSubstr("are damaged"));
+}
+
+}  // namespace
