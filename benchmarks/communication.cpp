@@ -127,7 +127,8 @@ spot::SpotParameters spot_parameters() {
   spots.influence = 2.5e-3;
   spots.step_height = SpotCommand::step_height_in_diameters(Accuracy::normal);
   spots.step_width = spot::step_width_for(1.35, spots.step_height);
-  spots.speed = 3.0;
+  spots.speed = 2.4;
+  spots.dilation = 0.03;
   spots.injection_rate = 368.0;
   spots.fixed_volume = 77.0;
   return spots;

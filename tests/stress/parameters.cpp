@@ -53,9 +53,12 @@ void add_parameters(std::vector<Case>& cases) {
     s.spots.injection_rate /= v;
   });
   add_values(cases, "R_s / d", {0.6, 1, 1.5, 2, 3, 4, 5, 6}, [](Scene& s, double v) { s.set_radius(v); });
-  add_values(cases, "dz / d", {0.005, 0.02, 0.05, 0.1, 0.2, 0.5}, [](Scene& s, double v) { s.set_step_height(v); });
-  add_values(cases, "nu_s tau / 380", {0.01, 1, 2, 5, 10, 20, 50, 100},
+  add_values(cases, "dz / d", {0.005, 0.02, 0.05, 0.1, 0.2, 0.5, 1.2, 2.4},
+             [](Scene& s, double v) { s.set_step_height(v); });
+  add_values(cases, "nu_s tau / 368", {0.01, 1, 2, 5, 10, 20, 50, 100},
              [](Scene& s, double v) { s.spots.injection_rate *= v; });
+  add_values(cases, "dilation c_0", {0, 1e-6, 1e-3, 0.01, 0.03, 0.1, 0.9},
+             [](Scene& s, double v) { s.spots.dilation = v; });
 }
 
 /// What the time-ordered algorithm has not.
@@ -164,6 +167,7 @@ void add_odd_numbers(std::vector<Case>& cases) {
       {"dx", [](Scene& s) -> double& { return s.spots.step_width; }},
       {"dz", [](Scene& s) -> double& { return s.spots.step_height; }},
       {"v_s", [](Scene& s) -> double& { return s.spots.speed; }},
+      {"c_0", [](Scene& s) -> double& { return s.spots.dilation; }},
       {"nu_s", [](Scene& s) -> double& { return s.spots.injection_rate; }},
       {"volume", [](Scene& s) -> double& { return s.spots.fixed_volume; }},
       {"alpha", [](Scene& s) -> double& { return s.relaxation.alpha; }},
@@ -195,20 +199,21 @@ void add_combinations(std::vector<Case>& cases, int number) {
     scene.set_radius(log_uniform(0.6, 6.0));
     if (draws.below(2) == 0) scene.spots.fixed_volume = 0.0;
     scene.set_step_height(log_uniform(0.005, 0.5));
+    scene.spots.dilation = draws.below(2) == 0 ? 0.0 : log_uniform(1e-3, 0.5);
     scene.spots.influence = 2.5e-3 * log_uniform(0.1, 100.0);
-    scene.spots.injection_rate = 380.0 * log_uniform(0.01, 100.0);
+    scene.spots.injection_rate = 368.0 * log_uniform(0.01, 100.0);
     scene.relaxation.alpha = draws.uniform(0.1, 1.9);
     scene.relaxation.momentum = scene.time_ordered ? 0.0 : draws.uniform(0.0, 0.95);
     scene.relaxation.tolerance = log_uniform(1e-4, 0.1);
     // Births and steps grow with time; no more moves than take a second.
     const double moves = scene.time_ordered ? 2e4 : 4e5;
     scene.time = std::min(4.0, std::sqrt(2.0 * moves / (scene.spots.injection_rate * scene.spots.move_rate())));
-    cases.push_back(
-        {"all at once",
-         spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ", scene.spots.radius,
-                       ", dz ", scene.spots.step_height, ", nu_s ", scene.spots.injection_rate, ", momentum ",
-                       scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
-         scene, true});
+    cases.push_back({"all at once",
+                     spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ",
+                                   scene.spots.radius, ", dz ", scene.spots.step_height, ", nu_s ",
+                                   scene.spots.injection_rate, ", c_0 ", scene.spots.dilation, ", momentum ",
+                                   scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
+                     scene, true});
   }
 }
 

@@ -8,27 +8,31 @@
 
 namespace stress {
 
+constexpr double deck_radius = 3.53;
+
 Scene::Scene() {
-  spots.radius = 2.6;
+  spots.profile = spot::InfluenceProfile::parabolic;
+  spots.radius = deck_radius;
   spots.influence = 2.5e-3;
-  spots.speed = 3.2;
-  spots.injection_rate = 380.0;
+  spots.speed = 2.4;
+  spots.dilation = 0.03;
+  spots.injection_rate = 368.0;
   spots.fixed_volume = 77.0;
   spots.seed = 1;
-  set_step_height(0.8);
-  relaxation.tolerance = 3e-3;
-  relaxation.momentum = 0.6;
+  set_step_height(1.2);
+  relaxation.tolerance = 2.5e-3;
+  relaxation.momentum = 0.7;
   fill(14.0);
 }
 
 void Scene::set_step_height(double height) {
   spots.step_height = height;
-  spots.step_width = spot::step_width_for(1.25, height);
+  spots.step_width = spot::step_width_for(1.35, height);
 }
 
 void Scene::set_radius(double radius) {
   spots.radius = radius;
-  spots.fixed_volume = 77.0 * std::pow(radius / 2.6, 3);
+  spots.fixed_volume = 77.0 * std::pow(radius / deck_radius, 3);
   orifice = std::max(orifice, radius);
   half_width = std::max(half_width, orifice);
   half_depth = std::max(half_depth, orifice);

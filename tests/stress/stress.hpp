@@ -22,11 +22,11 @@ struct Scene {
   spot::Vector3 place = spot::Vector3::Zero();  ///< of the middle of the base
   double half_width = 6.0, half_depth = 4.0;
   double orifice = 4.0;
-  spot::SpotBuffers buffers{1.0, 1.0};
+  spot::SpotBuffers buffers{0.25, 2.0};
   spot::SpotParameters spots;
   spot::RelaxationParameters relaxation;
   double largest_overlap = 0.03;  ///< at the start
-  double window = 0.01;
+  double window = 0.1;
   double time = 4.0;  ///< of the drainage
   bool time_ordered = false;
   std::vector<spot::Grain> grains;  ///< around `place`, not shifted yet
