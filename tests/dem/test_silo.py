@@ -210,7 +210,28 @@ def test_packing_from_a_data_file(silo, packed, tmp_path):
     assert np.allclose(positions(first), positions(packed), atol=1e-9)
 
 
+def test_a_loose_packing_settles(silo, packed, tmp_path):
+    """Grains from half a diameter higher come down to the base again, and stay on it; the clock of the drainage starts then."""
+    data = (silo[0] / "pour" / "packed.data").read_text()
+    head, rest = data.split("Atoms", 1)
+    atoms, velocities = rest.split("Velocities")
+    lifted = [line.split() for line in atoms.splitlines()[2:] if line]
+    for columns in lifted:
+        columns[6] = repr(float(columns[6]) + 0.5 * DIAMETER)
+    path = tmp_path / "lifted.data"
+    path.write_text(f"{head}Atoms\n\n" + "\n".join(map(" ".join, lifted)) + f"\n\nVelocities{velocities}")
+    screen = run_ok("silo", "in.from_data", out=tmp_path, data=path, settle=4, **SCENE)
+    energy = float(re.search(r"600 grains of .*, kinetic energy (\S+) m g d a grain", screen).group(1))
+    assert energy < 0.01
+    run_ok("silo", "in.drain", out=tmp_path, time=0.02 * TAU, every=0.02, **SCENE)
+    (step, first), = read_dump(tmp_path / "drain" / "drain.0.dump")
+    assert step == 0 and np.array_equal(first["id"], packed["id"])
+    assert 0.48 * DIAMETER < first["z"].min() < 0.5 * DIAMETER
+    assert first["z"].mean() == pytest.approx(packed["z"].mean(), abs=0.3 * DIAMETER)
+
+
 @pytest.mark.parametrize("change, message", [({"data": "no/such.data"}, "no data file no/such.data"),
+                                             ({"settle": -1}, "settle is -1 tau"),
                                              ({"half_width": 4}, "has grains outside the silo")])
 def test_bad_data_file(silo, change, message, tmp_path):
     done = run("silo", "in.from_data", out=tmp_path, **{"data": silo[0] / "pour" / "packed.data", **SCENE, **change})

@@ -8,6 +8,7 @@ import subprocess
 
 import numpy as np
 import pytest
+import scipy.spatial
 import zstandard
 
 from lammps_runs import DISTRIBUTION, FRONT_END, PLUGIN, ROOT, needs_distribution, needs_mpirun, on_ranks, thermo
@@ -80,6 +81,21 @@ def test_silo_out_of_sample(tmp_path):
     assert scene["orifice_radius"] == pytest.approx(3.25 * 0.003)
     last = np.loadtxt(list(dumps.values())[-1].splitlines()[9:])
     assert 17800 < len(last) < 18000 and (abs(last[:, 2]) < 16 * 0.003).all()
+
+
+def test_stacked_bed(tmp_path):
+    """Three layers of the packing, one upon the other: no two grains far inside each other, as dense as it, and nearly so at the seams."""
+    bed = tmp_path / "stacked.data"
+    done = subprocess.run([FRONT_END, "-in", "in.stack", "-var", "out", bed, "-log", "none"], cwd=SILO / "out-of-sample",
+                          capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stdout[-3000:]
+    atoms = bed.read_text().split("Atoms # sphere")[1].split("Velocities")[0].split()
+    rows = np.array(atoms, dtype=float).reshape(-1, 10)
+    positions = rows[:, 4:7] / 0.003
+    assert len(rows) == 134999 and np.array_equal(np.sort(rows[:, 0]), np.arange(1, len(rows) + 1))
+    assert scipy.spatial.cKDTree(positions).query(positions, 2)[0][:, 1].min() >= 0.979
+    in_slabs = np.histogram(positions[:, 2], np.arange(0, 281, 20))[0]
+    assert (in_slabs > 8900).all() and np.median(in_slabs) > 9150
 
 
 def thermo_but_times(log):
