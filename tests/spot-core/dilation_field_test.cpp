@@ -68,6 +68,35 @@ TEST(DilationFieldAnalytic, EvenSpotsDilateEvenlyUpToTheWalls) {
     EXPECT_NEAR(round.at(place) / share(spots, spacing), 1.0, 0.04) << place.transpose();
 }
 
+/// Spots at random, some outside the walls; each node's count is that of all spots by their nearness to it.
+TEST(DilationFieldBruteForce, EqualsTheSumOverAllSpots) {
+  const SpotParameters spots = dilating_spots();
+  const auto space = scenes::empty_space();
+  scenes::Draws draws(7);
+  std::vector<Vector3> places;
+  for (int k = 0; k < 300; ++k) places.push_back(draws.in_box({-9, -7, -4}, {8, 9, 11}));
+  Alone alone;
+  DilationField field(spots, *space, 1.0);
+  field.count(places, alone);
+  const auto hat = [](double a, double b) { return std::max(0.0, 1.0 - std::abs(a - b)); };
+  const Vector3 origin = space->orifice().centre;
+  for (int k = 0; k < 100; ++k) {
+    const Vector3 at = draws.in_box({-13, -10, -8}, {12, 12, 15}), u = (at - origin) / spots.radius;
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3 node = u.array().floor() + Eigen::Array3d(corner & 1, corner >> 1 & 1, corner >> 2);
+      const double near = hat(u.x(), node.x()) * hat(u.y(), node.y()) * hat(u.z(), node.z());
+      for (const Vector3& place : places) {
+        const Vector3 v = (place - origin) / spots.radius;
+        sum += near * hat(v.x(), node.x()) * hat(v.y(), node.y()) * hat(v.z(), node.z());
+      }
+    }
+    const double expected = sum * spots.missing_volume(1.0) / std::pow(spots.radius, 3);
+    EXPECT_NEAR(field.at(at), expected, 0.02 * expected + 1e-5)
+        << at.transpose();  // whole 256ths of a spot, and of a place
+  }
+}
+
 TEST(DilationFieldAnalytic, OneSpotDilatesByItsVolumeInAll) {
   const SpotParameters spots = dilating_spots();
   const auto space = scenes::empty_space();

@@ -75,9 +75,21 @@ class PlainWindows {
         next_birth_(walk_.time_before_birth(0)) {}
 
   void advance_by_a_window() {
-    const double until = ++windows_ * window_;
-    for (; next_birth_ <= until; next_birth_ += walk_.time_before_birth(++born_))
+    const double now = windows_ * window_, until = ++windows_ * window_;
+    spot::DilationField field(spots_, *silo_, 1.0);
+    std::vector<spot::Vector3> places;
+    for (const Live& live : live_)
+      if (!live.out) places.push_back(live.spot.position);
+    spot::Alone alone;
+    field.count(places, alone);
+    const auto set_pace = [&](spot::Spot& spot, double time) {
+      if (spots_.dilation > 0.0) walk_.set_pace(spot, time, field.pace(spot.position));
+    };
+    for (Live& live : live_) set_pace(live.spot, now);
+    for (; next_birth_ <= until; next_birth_ += walk_.time_before_birth(++born_)) {
       live_.push_back({walk_.birth(born_, next_birth_, *silo_), false});
+      set_pace(live_.back().spot, next_birth_);
+    }
     for (Live& live : live_) {
       while (live.spot.next_step <= until && !live.out)
         moves_of_window_.emplace_back(walk_.step(live.spot, *silo_), &live);
@@ -124,6 +136,7 @@ struct Spots {
   double fixed_volume;
   bool together;
   bool parabolic = false;
+  double dilation = 0.0;
 };
 
 class WindowedDrainageBruteForce : public testing::TestWithParam<Spots> {};
@@ -134,6 +147,7 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   spots.injection_rate = 60.0;
   spots.fixed_volume = GetParam().fixed_volume;
   spots.together = GetParam().together;
+  spots.dilation = GetParam().dilation;
   if (GetParam().parabolic) spots.profile = spot::InfluenceProfile::parabolic;
   RelaxationParameters never;
   never.tolerance = 1e6;
@@ -158,7 +172,8 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
 
 INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
                          testing::Values(Spots{"Poisson", 0.0, false}, Spots{"FixedVolume", 77.0, false},
-                                         Spots{"Parabolic", 77.0, false, true}, Spots{"Together", 0.0, true},
+                                         Spots{"Parabolic", 77.0, false, true},
+                                         Spots{"Dilation", 77.0, false, true, 0.03}, Spots{"Together", 0.0, true},
                                          Spots{"FixedVolumeTogether", 77.0, true}),
                          [](const auto& spots) { return spots.param.name; });
 
