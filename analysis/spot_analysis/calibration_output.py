@@ -21,13 +21,18 @@ def described(estimate, unit):
             "unit": unit}
 
 
+def _numbers_of(estimate, scale=1.0):
+    """Value and error as floats; a number that was chosen, not measured, has the error 0, rounding apart."""
+    value, error = scale * float(estimate.value), scale * float(estimate.error)
+    return value, error if error > 1e-12 * abs(value) else 0.0
+
+
 def table(parameters, uncorrected):
     """Lines of text: the parameters with errors, and what 2006's formulas give."""
     lines = [f"{'':10} {'value':>10} {'+-':>9}   {'as 2006':>10} {'+-':>9}   unit"]
     for name, unit in UNITS.items():
-        one, other = parameters[name], uncorrected[name]
-        lines.append(f"{SYMBOLS[name]:10} {float(one.value):10.4g} {float(one.error):9.2g}   {float(other.value):10.4g} "
-                     f"{float(other.error):9.2g}   {unit}")
+        (one, error), (other, other_error) = _numbers_of(parameters[name]), _numbers_of(uncorrected[name])
+        lines.append(f"{SYMBOLS[name]:10} {one:10.4g} {error:9.2g}   {other:10.4g} {other_error:9.2g}   {unit}")
     return "\n".join(lines)
 
 
@@ -47,8 +52,7 @@ def lammps_variables(parameters, source, span, profile="parabolic"):
              "# lmp -in in.silo_spot -var parameters THIS_FILE",
              f"variable        profile    index {profile}"]
     for name, factor in IN_THE_DECK.items():
-        scale = RADII[profile] if name == "radius" else 1.0
-        value, error = scale * float(parameters[name].value), scale * float(parameters[name].error)
+        value, error = _numbers_of(parameters[name], RADII[profile] if name == "radius" else 1.0)
         number = f"$({value:.6g}{factor})" if factor else f"{value:.6g}"
         lines.append(f"variable        {name:10} index {number}"
                      f"  # {SYMBOLS[name]}, +- {error:.2g} {UNITS[name]}")
