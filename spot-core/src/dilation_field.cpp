@@ -42,9 +42,9 @@ std::array<DilationField::Corner, 8> DilationField::corners(const Vector3& point
   Node low;
   std::array<std::int64_t, 3> share;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double at = (point[static_cast<int>(axis)] - origin_[static_cast<int>(axis)]) / spacing_;
+    const double at = cell_of(point, axis);
     low[axis] = static_cast<int>(std::floor(at));
-    share[axis] = std::lround((at - low[axis]) * parts);
+    share[axis] = static_cast<std::int64_t>((at - low[axis]) * parts + 0.5);
   }
   std::array<Corner, 8> all;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -74,15 +74,15 @@ std::size_t DilationField::place(const Node& node) const {
 
 void DilationField::count(const std::vector<Vector3>& spots, Communicator& communicator) {
   std::vector<double> ends(6, std::numeric_limits<double>::infinity());  // least nodes, and those of mirrored axes
-  for (const Vector3& spot : spots) {
-    const auto around = corners(spot);
+  for (const Vector3& spot : spots)
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      ends[axis] = std::min<double>(ends[axis], around.front().node[axis]);
-      ends[3 + axis] = std::min<double>(ends[3 + axis], -around.back().node[axis]);
+      const double low = std::floor(cell_of(spot, axis));
+      ends[axis] = std::min(ends[axis], low);
+      ends[3 + axis] = std::min(ends[3 + axis], -1.0 - low);
     }
-  }
   ends = communicator.least(ends);
   counts_.clear();
+  counted_volumes_.clear();
   low_ = high_ = {0, 0, 0};
   if (std::isinf(ends[0])) return;  // nowhere is a spot
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -93,6 +93,15 @@ void DilationField::count(const std::vector<Vector3>& spots, Communicator& commu
   for (const Vector3& spot : spots)
     for (const Corner& corner : corners(spot)) counts_[place(corner.node)] += corner.weight;
   counts_ = communicator.sum(std::move(counts_));
+  look_volumes_up();
+}
+
+void DilationField::look_volumes_up() {
+  counted_volumes_.resize(counts_.size());
+  Node node;
+  for (node[2] = low_[2]; node[2] < high_[2]; ++node[2])
+    for (node[1] = low_[1]; node[1] < high_[1]; ++node[1])
+      for (node[0] = low_[0]; node[0] < high_[0]; ++node[0]) counted_volumes_[place(node)] = volume_of(node);
 }
 
 /// Of the lattice cell around a node, nearness to it being the weight.
@@ -113,8 +122,13 @@ double DilationField::at(const Vector3& point) const {
   double spots = 0.0, volume = 0.0;
   for (const Corner& corner : corners(point)) {
     const auto weight = static_cast<double>(corner.weight);
-    volume += weight * volume_of(corner.node);
-    if (counted(corner.node)) spots += weight * static_cast<double>(counts_[place(corner.node)]);
+    if (!counted(corner.node)) {
+      volume += weight * volume_of(corner.node);
+      continue;
+    }
+    const std::size_t at = place(corner.node);
+    volume += weight * counted_volumes_[at];
+    spots += weight * static_cast<double>(counts_[at]);
   }
   constexpr double whole = static_cast<double>(parts) * parts * parts;
   return volume > 0.0 ? spots / whole * spot_volume_ / volume : std::numeric_limits<double>::infinity();
@@ -128,6 +142,7 @@ double DilationField::pace(const Vector3& point) const {
 void DilationField::replace_container(const Container& container) {
   container_ = &container;
   volumes_.clear();
+  look_volumes_up();
 }
 
 void DilationField::save(Bytes& bytes) const {
@@ -144,10 +159,11 @@ void DilationField::restore(ByteReader& saved) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     nodes *= static_cast<std::size_t>(std::max<std::int64_t>(0, std::int64_t{high_[axis]} - low_[axis]));
   if (counts_.size() != nodes) throw InvalidState("the saved counts of spots are damaged");
+  look_volumes_up();
 }
 
 std::size_t DilationField::memory() const {
-  return bytes_in(counts_) + volumes_.size() * sizeof(std::pair<const Node, double>);
+  return bytes_in(counts_, counted_volumes_) + volumes_.size() * sizeof(std::pair<const Node, double>);
 }
 
 }  // namespace spot

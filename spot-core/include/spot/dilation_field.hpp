@@ -57,16 +57,23 @@ class DilationField {
     std::int64_t weight;  // in 2^-24ths
   };
 
+  /// Where it is along an axis, in lattice spacings.
+  double cell_of(const Vector3& point, std::size_t axis) const {
+    const auto i = static_cast<int>(axis);
+    return (point[i] - origin_[i]) / spacing_;
+  }
   std::array<Corner, 8> corners(const Vector3& point) const;
   bool counted(const Node& node) const;
   std::size_t place(const Node& node) const;
   double volume_of(const Node& node) const;
+  void look_volumes_up();
 
   const Container* container_;
   Vector3 origin_;
   double spacing_, spot_volume_, reference_;
   Node low_ = {0, 0, 0}, high_ = {0, 0, 0};  // of the nodes counted: from low_ to high_, exclusive
   std::vector<std::int64_t> counts_;         // of spots, in 2^-24ths
+  std::vector<double> counted_volumes_;      // around the same nodes
   mutable std::map<Node, double> volumes_;   // inside the walls, around the nodes asked for so far
 };
 
