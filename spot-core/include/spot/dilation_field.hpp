@@ -22,13 +22,14 @@ namespace spot {
 /// brings more spots then has hardly more of them at a time, and starts narrow and fast, and widens as its sides
 /// dilate.
 ///
-/// Spots are counted on the nodes of a cubic lattice R_s apart, each shared out between the eight nodes around it in
-/// proportion to its nearness to them along each axis, in whole 2^-24ths: sums are the same on any ranks.
+/// Spots are counted on the nodes of a cubic lattice R_s apart, but no closer than grains are; each is shared out
+/// between the eight nodes around it in proportion to its nearness to them along each axis, in whole 2^-24ths: sums are
+/// the same on any ranks.
 class DilationField {
  public:
   static constexpr double slowest = 0.125, fastest = 4.0;
 
-  /// `diameter`: of grains.
+  /// `diameter`: of grains. The container must outlive the field, or be replaced.
   DilationField(const SpotParameters& parameters, const Container& container, double diameter);
 
   /// Collective. Counts spots anew, of which each rank brings some.
