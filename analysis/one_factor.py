@@ -37,6 +37,7 @@ CHOICES = {
     "persistence 0.8": {"options": "persistence 0.8"},
     "constant v_s": {"dilation": "0", "speed": f"{3.0 * D / TAU}"},
     "w 1.5e-3": {"influence": "1.5e-3", "injection": f"{613 / TAU}"},
+    "w 6e-3": {"influence": "6e-3", "injection": f"{153.3 / TAU}"},
     "v_s 3.0": {"speed": f"{3.0 * D / TAU}"},
     **{f"dz {dz} d": {"options": f"dz {dz * D}"} for dz in (0.025, 0.1, 0.4, 1.6)},
     "alpha 0.6": {"options": "alpha 0.6"},

@@ -22,8 +22,10 @@ from .counts import SLAB
 from .interval import IntervalView
 
 STEP_HEIGHT = 0.1  # d, dz of 2006: sets the move rate v_s / dz and the sideways step sqrt(4 b_s dz)
-UNITS = {"radius": "d", "influence": "1", "volume": "grains", "diffusion": "d", "dilation": "1", "speed": "d/tau", "injection": "1/tau"}
-SYMBOLS = {"radius": "R_s", "influence": "w", "volume": "<N>", "diffusion": "b_s", "dilation": "c_0", "speed": "v_s", "injection": "nu_s"}
+UNITS = {"radius": "d", "influence": "1", "volume": "grains", "diffusion": "d", "dilation": "1", "speed": "d/tau",
+         "injection": "1/tau"}
+SYMBOLS = {"radius": "R_s", "influence": "w", "volume": "<N>", "diffusion": "b_s", "dilation": "c_0", "speed": "v_s",
+           "injection": "nu_s"}
 
 
 @dataclass(frozen=True)
@@ -55,10 +57,11 @@ class Measured:
     def pace(self, dilation):
         """Their speed over v_s, if they climb at v_s (c / c_0)^2 where they take the share c of the volume (fix spot,
         ``dilation``): c is that of the grains missing in the slab. 1 for an Estimate c_0 = 0, spots that climb at v_s."""
+        if dilation.value == 0:
+            return combine(np.ones_like, self.drop)
         container = self.view.run.scene.container()
         volume = 4 * container.half_width * container.half_depth * (SLAB[1] - SLAB[0])
-        return combine(lambda drop, c_0: np.where(c_0 > 0, (drop * np.pi / 6 / volume / np.where(c_0 > 0, c_0, 1))**2, 1.0),
-                       self.drop, dilation)
+        return combine(lambda drop, c_0: (drop * np.pi / 6 / volume / c_0)**2, self.drop, dilation)
 
     def grains_in(self, radius):
         """<N> in a spot of the Estimate ``radius``."""

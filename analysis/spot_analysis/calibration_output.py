@@ -11,7 +11,8 @@ from .calibration_estimate import combine
 from .counts import SLAB
 from .particle_diffusion import DROPS
 
-IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "dilation": "", "speed": "*v_d/v_tau", "injection": "/v_tau"}
+IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "dilation": "", "speed": "*v_d/v_tau",
+               "injection": "/v_tau"}
 
 
 def described(estimate, unit):

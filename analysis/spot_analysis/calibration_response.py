@@ -9,7 +9,7 @@
 R_s is that of uniform spots with the same volume. 2006 has b_p = w b_s. It holds if a step moves the grains around its start.
 With influence taken at the middle of the step, as 2006 says, steps that enter a grain's sphere and those that leave it undo
 each other in part: walks laid over a grain give a share of 0.69 to 0.72 with dz of 0.1 and 0.2 d, for R_s of 2.2 to 3 d and
-b_s of 1 to 1.5 d. Relaxation pushes grains about, on through their neighbours, and the more so the smaller w: so a quarter of
+b_s of 1 to 1.5 d. Relaxation pushes grains about, on through their neighbours, and the more so the smaller w: so a fifth of
 w b_s is all by which b_p follows w, and R_s matters as much. Runs of fix spot on the packing of examples/silo (parabolic spots
 of a fixed volume, dilation 0.03, "accuracy normal"), in d and tau, 40-90 tau, speed and outflow over what the parameters say;
 analysis/one_factor.py made them:
