@@ -14,7 +14,7 @@ using spot::message;
 namespace {
 
 constexpr char magic[8] = {'s', 'p', 'o', 't', ' ', 'r', 'u', 'n'};
-constexpr std::int32_t version = 3;
+constexpr std::int32_t version = 4;
 
 /// FNV-1a, of eight bytes at a time: enough to find what was cut off or overwritten.
 class Checksum {

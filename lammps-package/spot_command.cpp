@@ -191,6 +191,7 @@ const std::map<std::string, Reader>& readers() {
        }},
       {"alpha", [](SpotCommand& c, Words& w) { c.alpha = w.positive("alpha"); }},
       {"momentum", [](SpotCommand& c, Words& w) { c.momentum = w.not_negative("the momentum"); }},
+      {"contact", [](SpotCommand& c, Words& w) { c.contact_overlap = w.not_negative("the overlap in contact, in diameters,"); }},
       {"volume", [](SpotCommand& c, Words& w) { c.spots.fixed_volume = w.not_negative("the number of grains"); }},
       {"steps",
        [](SpotCommand& c, Words& w) {
@@ -261,9 +262,10 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::I
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 4e-3 : 2.5e-3;
+  relaxation.tolerance = fast ? 4e-3 : 1.7e-3;
   relaxation.alpha = fast ? 1.0 : 0.8;
-  relaxation.momentum = profile == spot::InfluenceProfile::uniform ? 0.5 : fast ? 0.6 : 0.7;
+  relaxation.momentum = profile == spot::InfluenceProfile::uniform ? 0.5 : fast ? 0.6 : 0.67;
+  relaxation.contact_overlap = fast ? 0.0 : 1.5e-3;
   return relaxation;
 }
 
@@ -274,6 +276,7 @@ void SpotCommand::resolve(double diameter) {
   // The schedules of 2006 and 2010 go with their alpha.
   relaxation.alpha = alpha.value_or(relaxation_of(*time_ordered ? Accuracy::exact : accuracy, spots.profile).alpha);
   relaxation.momentum = *time_ordered ? 0.0 : momentum.value_or(chosen.momentum);
+  relaxation.contact_overlap = contact_overlap.value_or(*time_ordered ? 0.0 : chosen.contact_overlap);
   if (spots.radius == 0.0) spots.radius = radius_in_diameters(spots.profile) * diameter;
   if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
   spots.step_width =
@@ -320,5 +323,6 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"alpha", precise(relaxation.alpha)},
           {"strength", relaxation.strength == spot::RelaxationStrength::half_each ? "half" : "full"},
           {"momentum", precise(relaxation.momentum)},
+          {"contact", precise(relaxation.contact_overlap)},
           {"shell", precise(relaxation.shell)}};
 }

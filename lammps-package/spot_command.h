@@ -41,7 +41,7 @@ struct SpotCommand {
   spot::SpotParameters spots;
   spot::RelaxationParameters relaxation;
   std::optional<bool> time_ordered;  // the driver of 2006, not the windowed one
-  std::optional<double> tolerance, alpha, momentum;
+  std::optional<double> tolerance, alpha, momentum, contact_overlap;
   Accuracy accuracy = Accuracy::normal;
   int threads = 1;
   std::optional<double> diffusion_length;

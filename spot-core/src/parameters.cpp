@@ -10,6 +10,9 @@ namespace spot {
 
 namespace {
 
+/// In diameters; far from what makes a packing collapse.
+constexpr double largest_contact_overlap = 0.05;
+
 void require_positive(const char* name, double value) {
   if (!(value > 0.0) || !std::isfinite(value))
     throw InvalidParameter(message(name, " is ", value, " but must be positive and finite"));
@@ -63,6 +66,9 @@ void RelaxationParameters::validate() const {
   if (every < 0) throw InvalidParameter(message("relaxation interval is ", every, " but must be zero (never) or more"));
   if (!(momentum >= 0.0 && momentum < 1.0))
     throw InvalidParameter(message("relaxation momentum is ", momentum, " but must be from 0 to below 1"));
+  if (!(contact_overlap >= 0.0 && contact_overlap <= largest_contact_overlap))
+    throw InvalidParameter(message("overlap in contact is ", contact_overlap, " diameters but must be from 0 to ",
+                                   largest_contact_overlap));
 }
 
 }  // namespace spot

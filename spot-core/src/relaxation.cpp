@@ -11,7 +11,7 @@ Relaxation::Relaxation(const RelaxationParameters& parameters) : parameters_(par
 double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, Push& push) const {
   const double *x = packing.x(), *y = packing.y(), *z = packing.z();
   const double xi = x[i], yi = y[i], zi = z[i];
-  const double d = packing.diameter();
+  const double d = packing.diameter(), parted = parameters_.distance_in_contact(d);
   const Quantum& quantum = packing.quantum();
   double least = d * d;
   const auto [first, last] = packing.neighbours(i);
@@ -20,6 +20,7 @@ double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, 
     const double squared = dx * dx + dy * dy + dz * dz;
     if (squared >= d * d) continue;
     least = std::min(least, squared);
+    if (squared >= parted * parted) continue;
     const double share = is_movable_[*j] ? parameters_.pair_share() : parameters_.fixed_share();
     const double distance = std::sqrt(squared);
     if (distance == 0.0) {
@@ -27,7 +28,7 @@ double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, 
       push.x += quantum.round(packing.id(i) < packing.id(*j) ? -share * d : share * d);
       continue;
     }
-    const double scale = share * (d - distance) / distance;
+    const double scale = share * (parted - distance) / distance;
     // Every push is rounded by itself: then their sum does not depend on the order of the neighbours.
     push.x += quantum.round(scale * dx);
     push.y += quantum.round(scale * dy);

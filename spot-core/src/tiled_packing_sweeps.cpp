@@ -51,7 +51,7 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
     swept += task.grains;
     depth = std::max(depth, task.depth);
   }
-  overlap_swept_ = 1.0 - std::sqrt(1.0 - static_cast<double>(depth));
+  overlap_swept_ = 1.0 - parameters.distance_in_contact(1.0) * std::sqrt(1.0 - static_cast<double>(depth));
   return static_cast<std::size_t>(communicator_->sum(swept));
 }
 
@@ -95,10 +95,10 @@ void TiledPacking::set_border(std::int32_t from, std::int32_t to, std::int32_t d
 
 void TiledPacking::push_apart(Task& task, const RelaxationParameters& parameters, const Container& container) const {
   task.pushes.resize(task.grains);
-  const double diameter = diameter_ / quantum_.length();
+  const double parted = parameters.distance_in_contact(diameter_) / quantum_.length();
   kernels_->push_off_neighbours(
       points_.data(), task.active.data(), task.grains, {lists_.data(), list_size_.data(), list_capacity_},
-      {static_cast<float>(1.0 / (diameter * diameter)), static_cast<float>(parameters.pair_share()),
+      {static_cast<float>(1.0 / (parted * parted)), static_cast<float>(parameters.pair_share()),
        static_cast<float>(parameters.fixed_share())},
       task.pushes.data());
   part_coincident(task, parameters.pair_share() * diameter_);

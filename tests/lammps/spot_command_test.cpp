@@ -50,7 +50,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   const SpotCommand c = parse(
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
-      "accuracy fast momentum 0.3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 peratom yes");
+      "accuracy fast momentum 0.3 contact 2e-3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -76,6 +76,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.average, 5);
   EXPECT_EQ(c.accuracy, Accuracy::fast);
   EXPECT_EQ(c.momentum, 0.3);
+  EXPECT_EQ(c.contact_overlap, 2e-3);
   EXPECT_EQ(c.spots.fixed_volume, 77.5);
   EXPECT_TRUE(c.spots.together);
   EXPECT_EQ(c.threads, 4);
@@ -121,15 +122,17 @@ TEST(SpotCommand, AccuracyDecidesWhatIsLeftOpen) {
     EXPECT_EQ(c.relaxation.tolerance, chosen.tolerance) << word;
     EXPECT_EQ(c.relaxation.alpha, chosen.alpha) << word;
     EXPECT_EQ(c.relaxation.momentum, chosen.momentum) << word;
+    EXPECT_EQ(c.relaxation.contact_overlap, chosen.contact_overlap) << word;
     EXPECT_EQ(c.spots.step_height, 2.0 * SpotCommand::step_height_in_diameters(accuracy)) << word;
     EXPECT_NO_THROW(c.spots.validate()) << word;
     EXPECT_NO_THROW(c.relaxation.validate()) << word;
     // What is given stays.
-    const SpotCommand given = resolved("accuracy " + word + " relax tol 0.01 dz 0.3 alpha 0.9 momentum 0.1");
+    const SpotCommand given = resolved("accuracy " + word + " relax tol 0.01 dz 0.3 alpha 0.9 momentum 0.1 contact 0.003");
     EXPECT_FALSE(*given.time_ordered) << word;
     EXPECT_EQ(given.relaxation.tolerance, 0.01) << word;
     EXPECT_EQ(given.relaxation.alpha, 0.9) << word;
     EXPECT_EQ(given.relaxation.momentum, 0.1) << word;
+    EXPECT_EQ(given.relaxation.contact_overlap, 0.003) << word;
     EXPECT_EQ(given.spots.step_height, 0.3) << word;
   }
   EXPECT_LT(resolved("accuracy normal").relaxation.tolerance, resolved("accuracy fast").relaxation.tolerance);
@@ -148,6 +151,8 @@ TEST(SpotCommand, SchedulesOf2006And2010GoWithTheirAlphaAndNoMomentum) {
     const SpotCommand c = resolved("relax " + how);
     EXPECT_EQ(c.relaxation.alpha, 0.8) << how;
     EXPECT_EQ(c.relaxation.momentum, 0.0) << how;
+    EXPECT_EQ(c.relaxation.contact_overlap, 0.0) << how;
+    EXPECT_EQ(resolved("contact 1e-3 relax " + how).relaxation.contact_overlap, 1e-3) << how;
     EXPECT_EQ(resolved("alpha 0.5 relax " + how).relaxation.alpha, 0.5) << how;
   }
 }
@@ -184,6 +189,7 @@ TEST(SpotCommand, ResolvingTwiceChangesNothing) {
     EXPECT_EQ(*once.time_ordered, *twice.time_ordered) << more;
     EXPECT_EQ(once.relaxation.alpha, twice.relaxation.alpha) << more;
     EXPECT_EQ(once.relaxation.momentum, twice.relaxation.momentum) << more;
+    EXPECT_EQ(once.relaxation.contact_overlap, twice.relaxation.contact_overlap) << more;
     EXPECT_EQ(once.relaxation.tolerance, twice.relaxation.tolerance) << more;
     EXPECT_EQ(once.spots.step_height, twice.spots.step_height) << more;
     EXPECT_EQ(once.spots.step_width, twice.spots.step_width) << more;
@@ -217,7 +223,7 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
               AllOf(HasSubstr("'relax often' is not known"), HasSubstr("'relax tol delta'"), HasSubstr("'relax never'"),
                     HasSubstr("'every', 'chance', 'spot' and 'global'")));
   for (const std::string keyword :
-       {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads", "momentum", "volume"})
+       {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads", "momentum", "contact", "volume"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -233,6 +239,8 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   EXPECT_THAT(error_of(complete + "relax tol -1e-3"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(complete + "relax tol x"), HasSubstr("'x' is not a finite number"));
   EXPECT_THAT(error_of(complete + "momentum -0.1"), AllOf(HasSubstr("'momentum' is -0.1"), HasSubstr("zero or")));
+  EXPECT_THAT(error_of(complete + "contact -1e-3"), AllOf(HasSubstr("'contact' is -0.001"), HasSubstr("zero or positive")));
+  EXPECT_THROW(resolved("contact 0.1").relaxation.validate(), InvalidParameter);
   EXPECT_THAT(error_of(complete + "volume -1"), AllOf(HasSubstr("'volume' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "alpha 0"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(complete + "volume inf"), HasSubstr("'inf' is not a finite number"));
@@ -308,6 +316,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "normal",
                                                "exact",
                                                "momentum",
+                                               "contact",
                                                "volume",
                                                "steps",
                                                "poisson",
@@ -432,7 +441,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"buffer", in(*c.side_buffer / d, " d ") + in(*c.base_buffer / d, " d")},
       {"window", "see above"},
       {"accuracy", std::string(c.accuracy == Accuracy::normal ? "normal" : "another") +
-                       ", which sets dz, relax, alpha and momentum"},
+                       ", which sets dz, relax, alpha, momentum and contact"},
       {"strength", c.relaxation.strength == spot::RelaxationStrength::half_each ? "half" : "full"},
       {"shell", in(c.relaxation.shell, "")},
       {"overlap", in(c.largest_overlap, "")},
@@ -442,7 +451,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
   const std::string text = section("Default", ".. _Rycroft2006:");
   for (const auto& match : matches(text, "\n\\* (\\w+) = ([^\n]*)")) documented[match[1]] = match[2];
   EXPECT_EQ(documented, defaults);
-  const std::set<std::string> set_by_accuracy = {"dz", "relax", "alpha", "momentum"};
+  const std::set<std::string> set_by_accuracy = {"dz", "relax", "alpha", "momentum", "contact"};
   // Every keyword has a default or is said to have none.
   for (const std::string& keyword : known_keywords()) {
     if (defaults.count(keyword) > 0 || set_by_accuracy.count(keyword) > 0) continue;
@@ -461,6 +470,7 @@ TEST(SpotDocumentation, SaysWhatEachAccuracySets) {
                                         : in(c.relaxation.tolerance, "").insert(0, "tol "));
     expected["alpha"].push_back(in(c.relaxation.alpha, ""));
     expected["momentum"].push_back(ordered ? "--" : in(c.relaxation.momentum, ""));
+    expected["contact"].push_back(in(c.relaxation.contact_overlap, ""));
   }
   for (const auto& match :
        matches(documentation(), "\n(\\w+)  +(\\S+(?: \\S+)?)  +(\\S+(?: \\S+)?)  +(\\S+(?: \\S+)?)(?=\n)"))

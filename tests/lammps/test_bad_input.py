@@ -65,6 +65,8 @@ def test_missing_keyword(tmp_path, keyword):
     ("dilation 0.5 steps together", ["dilation is 0.5 ", "must be 0 for spots that step together"]),
     ("steps apart", ["'steps apart' is not known", "'poisson' or 'together'"]),
     ("momentum -1", ["'momentum' is -1", "zero or positive"]),
+    ("contact -1", ["'contact' is -1", "zero or positive"]),
+    ("contact 0.1", ["overlap in contact is 0.1 ", "from 0 to 0.05"]),
     ("momentum 1", ["momentum is 1 ", "below 1"]),
     ("volume -1", ["'volume' is -1", "zero or positive"]),
     ("threads 0", ["'0' after keyword 'threads'", "1 or more"]),

@@ -160,6 +160,19 @@ TEST(ParametersUnit, MomentumOutOfRangeNamesTheWordAndTheBound) {
   }
 }
 
+TEST(ParametersUnit, OverlapInContactOutOfRangeNamesTheWordAndTheBound) {
+  RelaxationParameters relaxation;
+  for (const double good : {0.0, 1.5e-3, 0.05}) {
+    relaxation.contact_overlap = good;
+    EXPECT_NO_THROW(relaxation.validate());
+  }
+  for (const double bad : {-1e-9, 0.0501, infinity, std::nan("")}) {
+    relaxation.contact_overlap = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { relaxation.validate(); }),
+                AllOf(HasSubstr("overlap in contact is "), HasSubstr("from 0 to 0.05")));
+  }
+}
+
 TEST(ParametersUnit, RelaxationDefaultsAreThoseOf2010) {
   const RelaxationParameters relaxation;
   EXPECT_EQ(relaxation.alpha, 0.8);
@@ -168,6 +181,7 @@ TEST(ParametersUnit, RelaxationDefaultsAreThoseOf2010) {
   EXPECT_EQ(relaxation.every, 1);
   EXPECT_EQ(relaxation.schedule, spot::RelaxationSchedule::moves);
   EXPECT_EQ(relaxation.momentum, 0.0);
+  EXPECT_EQ(relaxation.contact_overlap, 0.0);
 }
 
 TEST(ParametersUnit, RelaxationShares) {

@@ -135,8 +135,8 @@ class PlainPacking {
   spot::Grain grain(const Body& body) const { return {body.id, position(body), body.held}; }
 
   Place push_on(const Body& own, const spot::RelaxationParameters& parameters) const {
-    const double diameter = diameter_ / quantum_.length();
-    const auto per_square = static_cast<float>(1.0 / (diameter * diameter));
+    const double parted = (1.0 - parameters.contact_overlap) * diameter_ / quantum_.length();
+    const auto per_square = static_cast<float>(1.0 / (parted * parted));
     Place sum = {0, 0, 0};
     const auto add = [&sum](const Place& push) {
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += push[axis];

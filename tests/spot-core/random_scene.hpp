@@ -25,6 +25,7 @@ class RandomScene {
     draw_grains();
     draw_relaxation();
     draw_schedule();
+    relaxation_.contact_overlap = chance(0.5) ? log_uniform(1e-4, 1e-2) : 0.0;
   }
 
   std::unique_ptr<spot::Drainage> start(int threads) const {
@@ -54,7 +55,8 @@ class RandomScene {
                          ", dx = ", spots_.step_width / d, ", dz = ", spots_.step_height / d,
                          ", nu_s = ", spots_.injection_rate, ", volume ", spots_.fixed_volume, ", dilation ",
                          spots_.dilation, spots_.together ? ", together" : "", ", alpha ", relaxation_.alpha,
-                         ", momentum ", relaxation_.momentum, ", tolerance ", relaxation_.tolerance, ", ", windows_,
+                         ", momentum ", relaxation_.momentum, ", tolerance ", relaxation_.tolerance, ", contact ",
+                         relaxation_.contact_overlap, ", ", windows_,
                          " windows of ", window_, time_ordered_ ? ", time-ordered, every " : ", windowed, every ",
                          relaxation_.every);
   }

@@ -43,6 +43,7 @@ struct Scene {
     spots.injection_rate = 120.0;
     relaxation.tolerance = 3e-3;
     relaxation.momentum = 0.6;
+    relaxation.contact_overlap = 2e-3;
   }
 
   template <typename Start>

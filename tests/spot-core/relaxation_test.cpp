@@ -58,6 +58,17 @@ TEST(RelaxationUnit, PushesAlongTheLineOfCentres) {
   EXPECT_LT((grains[1].position - 0.94 * direction).norm(), close);
 }
 
+TEST(RelaxationUnit, GrainsComeToRestInContact) {
+  RelaxationParameters relaxation;
+  relaxation.contact_overlap = 0.01;
+  auto grains = swept({{1, {0.0, 0.0, 0.0}}, {2, {0.95, 0.0, 0.0}}}, relaxation);
+  EXPECT_NEAR(grains[0].position.x(), -0.4 * 0.04, close);
+  EXPECT_NEAR(grains[1].position.x(), 0.95 + 0.4 * 0.04, close);
+  grains = swept({{1, {0.0, 0.0, 0.0}}, {2, {0.995, 0.0, 0.0}}}, relaxation);
+  EXPECT_EQ(grains[0].position.x(), 0.0);
+  EXPECT_NEAR(grains[1].position.x(), 0.995, close);
+}
+
 TEST(RelaxationUnit, AMovableGrainTakesTheFullShareAgainstAFixedOne) {
   for (const auto strength : {RelaxationStrength::half_each, RelaxationStrength::full_each}) {
     const auto held = swept({{1, {0.0, 0.0, 0.0}, true}, {2, {0.95, 0.0, 0.0}}}, with_strength(strength));

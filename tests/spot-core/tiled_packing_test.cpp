@@ -105,6 +105,13 @@ Treatment with_momentum() {
   return t;
 }
 
+Treatment with_contacts() {
+  Treatment t{"Contacts"};
+  t.relaxation = relaxation_with(0.8, 0.67);
+  t.relaxation.contact_overlap = 1.5e-3;
+  return t;
+}
+
 Treatment with_held_grains() {
   Treatment t{"Held"};
   t.relaxation = relaxation_with(1.2, 0.7);
@@ -283,7 +290,7 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Treatments, TiledPackingBruteForce,
-                         testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_held_grains(),
+                         testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_contacts(), with_held_grains(),
                                          coincident(), large_steps(), many_moves(), tall(), far_from_the_origin(),
                                          in_metres(), in_a_cylinder(), in_a_funnel()),
                          [](const auto& treatment) { return treatment.param.name; });
@@ -488,6 +495,20 @@ TEST(TiledPackingAnalytic, MomentumCarriesTheLastCorrectionOn) {
     step *= 0.5;
     EXPECT_NEAR(sorted_grains(packing)[0].position.x(), expected, 1e-3) << "sweep " << sweep;
   }
+}
+
+TEST(TiledPackingAnalytic, GrainsComeToRestInContact) {
+  const auto space = scenes::empty_space();
+  TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {2, {1.96, 1, 1}}, {3, {5, 1, 1}}, {4, {5.995, 1, 1}}}, *space);
+  Workers workers(1);
+  RelaxationParameters relaxation;
+  relaxation.contact_overlap = 0.01;
+  packing.sweep(relaxation, 0, 1.0, *space, workers);
+  EXPECT_NEAR(packing.overlap_swept(), 0.04, 1e-6) << "before the sweep, in diameters";
+  for (int sweep = 0; sweep < 20; ++sweep) packing.sweep(relaxation, 0, 1.0, *space, workers);
+  const auto grains = sorted_grains(packing);
+  EXPECT_NEAR(grains[1].position.x() - grains[0].position.x(), 0.99, 1e-6);
+  EXPECT_NEAR(grains[3].position.x() - grains[2].position.x(), 0.995, 1e-6) << "nobody parts those who overlap by less";
 }
 
 TEST(TiledPackingUnit, CoincidentGrainsPartAlongX) {

@@ -14,20 +14,21 @@ Scene::Scene() {
   spots.profile = spot::InfluenceProfile::parabolic;
   spots.radius = deck_radius;
   spots.influence = 2.5e-3;
-  spots.speed = 2.4;
+  spots.speed = 2.5;
   spots.dilation = 0.03;
   spots.injection_rate = 368.0;
   spots.fixed_volume = 77.0;
   spots.seed = 1;
   set_step_height(1.2);
-  relaxation.tolerance = 2.5e-3;
-  relaxation.momentum = 0.7;
+  relaxation.tolerance = 1.7e-3;
+  relaxation.momentum = 0.67;
+  relaxation.contact_overlap = 1.5e-3;
   fill(14.0);
 }
 
 void Scene::set_step_height(double height) {
   spots.step_height = height;
-  spots.step_width = spot::step_width_for(1.35, height);
+  spots.step_width = spot::step_width_for(1.4, height);
 }
 
 void Scene::set_radius(double radius) {

@@ -94,11 +94,16 @@ struct RelaxationParameters {
   /// Windowed driver: share of a grain's last correction that is added to the next. Overlaps that spread over many
   /// grains take many sweeps to go; with momentum they go in fewer.
   double momentum = 0.0;
+  /// Overlap, in diameters, at which two grains are left alone: those that bear on each other overlap (Hertz), and are
+  /// in contact. 2006 parts them until they only touch.
+  double contact_overlap = 0.0;
 
   /// Share of the overlap by which a movable grain moves against another movable grain.
   double pair_share() const { return strength == RelaxationStrength::half_each ? 0.5 * alpha : alpha; }
   /// Share of the overlap by which a movable grain moves against a fixed one or a wall.
   double fixed_share() const { return alpha; }
+  /// Of the centres of two grains that are not pushed apart.
+  double distance_in_contact(double diameter) const { return (1.0 - contact_overlap) * diameter; }
 
   /// Throws InvalidParameter that names the first number outside its range.
   void validate() const;
