@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
-# Installs what is needed, builds and runs all tests, those of spot-core once more under sanitizers.
+# Installs what is needed, builds and runs all tests, those of spot-core and of the fix once more under sanitizers.
 #
 #   ./test.sh          everything but the tests labelled slow
 #   ./test.sh --slow   those too
@@ -19,7 +19,7 @@ scripts/install-packages.sh
 scripts/build.sh ci
 scripts/build.sh sanitize
 
-echo "== Tests of spot-core under the address and undefined behaviour sanitizers"
-ctest --test-dir build-sanitize --output-on-failure --no-tests=error -j "$(nproc)" -L core -LE slow
+echo "== Tests of spot-core and of fix spot under the address and undefined behaviour sanitizers"
+ctest --test-dir build-sanitize --output-on-failure --no-tests=error -j "$(nproc)" -L "core|lammps" -LE slow
 echo "== All tests"
 ctest --test-dir build --output-on-failure --no-tests=error -j "$(nproc)" "${slow[@]}"

@@ -191,7 +191,8 @@ const std::map<std::string, Reader>& readers() {
        }},
       {"alpha", [](SpotCommand& c, Words& w) { c.alpha = w.positive("alpha"); }},
       {"momentum", [](SpotCommand& c, Words& w) { c.momentum = w.not_negative("the momentum"); }},
-      {"contact", [](SpotCommand& c, Words& w) { c.contact_overlap = w.not_negative("the overlap in contact, in diameters,"); }},
+      {"contact",
+       [](SpotCommand& c, Words& w) { c.contact_overlap = w.not_negative("the overlap in contact, in diameters,"); }},
       {"volume", [](SpotCommand& c, Words& w) { c.spots.fixed_volume = w.not_negative("the number of grains"); }},
       {"steps",
        [](SpotCommand& c, Words& w) {

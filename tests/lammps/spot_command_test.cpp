@@ -50,7 +50,8 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   const SpotCommand c = parse(
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
-      "accuracy fast momentum 0.3 contact 2e-3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 peratom yes");
+      "accuracy fast momentum 0.3 contact 2e-3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 "
+      "peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -127,7 +128,8 @@ TEST(SpotCommand, AccuracyDecidesWhatIsLeftOpen) {
     EXPECT_NO_THROW(c.spots.validate()) << word;
     EXPECT_NO_THROW(c.relaxation.validate()) << word;
     // What is given stays.
-    const SpotCommand given = resolved("accuracy " + word + " relax tol 0.01 dz 0.3 alpha 0.9 momentum 0.1 contact 0.003");
+    const SpotCommand given =
+        resolved("accuracy " + word + " relax tol 0.01 dz 0.3 alpha 0.9 momentum 0.1 contact 0.003");
     EXPECT_FALSE(*given.time_ordered) << word;
     EXPECT_EQ(given.relaxation.tolerance, 0.01) << word;
     EXPECT_EQ(given.relaxation.alpha, 0.9) << word;
@@ -222,8 +224,8 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
   EXPECT_THAT(error_of(complete + "relax often"),
               AllOf(HasSubstr("'relax often' is not known"), HasSubstr("'relax tol delta'"), HasSubstr("'relax never'"),
                     HasSubstr("'every', 'chance', 'spot' and 'global'")));
-  for (const std::string keyword :
-       {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads", "momentum", "contact", "volume"})
+  for (const std::string keyword : {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads",
+                                    "momentum", "contact", "volume"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -239,7 +241,8 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   EXPECT_THAT(error_of(complete + "relax tol -1e-3"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(complete + "relax tol x"), HasSubstr("'x' is not a finite number"));
   EXPECT_THAT(error_of(complete + "momentum -0.1"), AllOf(HasSubstr("'momentum' is -0.1"), HasSubstr("zero or")));
-  EXPECT_THAT(error_of(complete + "contact -1e-3"), AllOf(HasSubstr("'contact' is -0.001"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "contact -1e-3"),
+              AllOf(HasSubstr("'contact' is -0.001"), HasSubstr("zero or positive")));
   EXPECT_THROW(resolved("contact 0.1").relaxation.validate(), InvalidParameter);
   EXPECT_THAT(error_of(complete + "volume -1"), AllOf(HasSubstr("'volume' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "alpha 0"), HasSubstr("must be positive"));
@@ -272,66 +275,26 @@ TEST(SpotCommand, OnlyThreadsMayBeModified) {
 
 /// Random commands: either they are read, and then what was read is in range, or the error is InvalidParameter.
 TEST(SpotCommand, RandomWordsGiveNoOtherError) {
-  const std::vector<std::string> vocabulary = {"box",
-                                               "cylinder",
-                                               "region",
-                                               "orifice",
-                                               "radius",
-                                               "influence",
-                                               "diffusion",
-                                               "dz",
-                                               "speed",
-                                               "injection",
-                                               "seed",
-                                               "outlet",
-                                               "buffer",
-                                               "window",
-                                               "relax",
-                                               "strength",
-                                               "alpha",
-                                               "shell",
-                                               "every",
-                                               "never",
-                                               "half",
-                                               "full",
-                                               "1",
-                                               "-1",
-                                               "0",
-                                               "2.5",
-                                               "1e308",
-                                               "-0",
-                                               "nan",
-                                               "inf",
-                                               "1e-320",
-                                               "overlap",
-                                               "average",
-                                               "",
-                                               " ",
-                                               "\xff\xfe",
-                                               "%s",
-                                               "+",
-                                               "18446744073709551616",
-                                               "accuracy",
-                                               "fast",
-                                               "normal",
-                                               "exact",
-                                               "momentum",
-                                               "contact",
-                                               "volume",
-                                               "steps",
-                                               "poisson",
-                                               "together",
-                                               "persistence",
-                                               "dilation",
-                                               "threads",
-                                               "tol",
-                                               "chance",
-                                               "spot",
-                                               "global",
-                                               "silo",
-                                               "peratom",
-                                               "yes",
-                                               "no"};
+  const std::vector<std::string> vocabulary = {"box",       "cylinder",    "region",
+                                               "orifice",   "radius",      "influence",
+                                               "diffusion", "dz",          "speed",
+                                               "injection", "seed",        "outlet",
+                                               "buffer",    "window",      "relax",
+                                               "strength",  "alpha",       "shell",
+                                               "every",     "never",       "half",
+                                               "full",      "1",           "-1",
+                                               "0",         "2.5",         "1e308",
+                                               "-0",        "nan",         "inf",
+                                               "1e-320",    "overlap",     "average",
+                                               "",          " ",           "\xff\xfe",
+                                               "%s",        "+",           "18446744073709551616",
+                                               "accuracy",  "fast",        "normal",
+                                               "exact",     "momentum",    "contact",
+                                               "volume",    "steps",       "poisson",
+                                               "together",  "persistence", "dilation",
+                                               "threads",   "tol",         "chance",
+                                               "spot",      "global",      "silo",
+                                               "peratom",   "yes",         "no"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {

@@ -56,9 +56,8 @@ class RandomScene {
                          ", nu_s = ", spots_.injection_rate, ", volume ", spots_.fixed_volume, ", dilation ",
                          spots_.dilation, spots_.together ? ", together" : "", ", alpha ", relaxation_.alpha,
                          ", momentum ", relaxation_.momentum, ", tolerance ", relaxation_.tolerance, ", contact ",
-                         relaxation_.contact_overlap, ", ", windows_,
-                         " windows of ", window_, time_ordered_ ? ", time-ordered, every " : ", windowed, every ",
-                         relaxation_.every);
+                         relaxation_.contact_overlap, ", ", windows_, " windows of ", window_,
+                         time_ordered_ ? ", time-ordered, every " : ", windowed, every ", relaxation_.every);
   }
 
  private:

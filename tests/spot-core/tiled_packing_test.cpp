@@ -290,9 +290,9 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Treatments, TiledPackingBruteForce,
-                         testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_contacts(), with_held_grains(),
-                                         coincident(), large_steps(), many_moves(), tall(), far_from_the_origin(),
-                                         in_metres(), in_a_cylinder(), in_a_funnel()),
+                         testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_contacts(),
+                                         with_held_grains(), coincident(), large_steps(), many_moves(), tall(),
+                                         far_from_the_origin(), in_metres(), in_a_cylinder(), in_a_funnel()),
                          [](const auto& treatment) { return treatment.param.name; });
 
 TEST(TiledPackingBruteForce, LargestOverlapIsThatOfAllPairs) {
@@ -499,7 +499,8 @@ TEST(TiledPackingAnalytic, MomentumCarriesTheLastCorrectionOn) {
 
 TEST(TiledPackingAnalytic, GrainsComeToRestInContact) {
   const auto space = scenes::empty_space();
-  TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {2, {1.96, 1, 1}}, {3, {5, 1, 1}}, {4, {5.995, 1, 1}}}, *space);
+  TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {2, {1.96, 1, 1}}, {3, {5, 1, 1}}, {4, {5.995, 1, 1}}},
+                       *space);
   Workers workers(1);
   RelaxationParameters relaxation;
   relaxation.contact_overlap = 0.01;

@@ -74,7 +74,8 @@ void add_windowed_parameters(std::vector<Case>& cases) {
     s.relaxation.alpha = 1.9;
     s.relaxation.momentum = v;
   });
-  add("contact / d", {1e-6, 1e-4, 5e-3, 0.02, 0.05, 0.06}, [](Scene& s, double v) { s.relaxation.contact_overlap = v; });
+  add("contact / d", {1e-6, 1e-4, 5e-3, 0.02, 0.05, 0.06},
+      [](Scene& s, double v) { s.relaxation.contact_overlap = v; });
   add("tolerance / d", {1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1}, [](Scene& s, double v) { s.relaxation.tolerance = v; });
   add("window / tau", {1e-3, 0.01, 0.05, 0.1, 0.5, 1}, [](Scene& s, double v) { s.window = v; });
   add("fixed volume / grains", {1, 77, 300, 1e3, 1e5, 1e300}, [](Scene& s, double v) { s.spots.fixed_volume = v; });
