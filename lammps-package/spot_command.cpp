@@ -271,13 +271,13 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::I
 }
 
 void SpotCommand::resolve(double diameter) {
-  const spot::RelaxationParameters chosen = relaxation_of(accuracy, spots.profile);
   time_ordered = time_ordered.value_or(accuracy == Accuracy::exact);
+  // What is relaxed in the order of time is relaxed as in 2006 and 2010.
+  const spot::RelaxationParameters chosen = relaxation_of(*time_ordered ? Accuracy::exact : accuracy, spots.profile);
   relaxation.tolerance = tolerance.value_or(chosen.tolerance);
-  // The schedules of 2006 and 2010 go with their alpha.
-  relaxation.alpha = alpha.value_or(relaxation_of(*time_ordered ? Accuracy::exact : accuracy, spots.profile).alpha);
+  relaxation.alpha = alpha.value_or(chosen.alpha);
   relaxation.momentum = *time_ordered ? 0.0 : momentum.value_or(chosen.momentum);
-  relaxation.contact_overlap = contact_overlap.value_or(*time_ordered ? 0.0 : chosen.contact_overlap);
+  relaxation.contact_overlap = contact_overlap.value_or(chosen.contact_overlap);
   if (spots.radius == 0.0) spots.radius = radius_in_diameters(spots.profile) * diameter;
   if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
   spots.step_width =

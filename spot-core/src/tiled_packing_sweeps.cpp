@@ -37,7 +37,7 @@ std::size_t TiledPacking::sweep(const RelaxationParameters& parameters, double d
   if (!container.concurrent())
     for (Task& task : tasks_) push_off_other_walls(task, parameters.fixed_share(), container);
   workers.run([&](int worker) {
-    // 1 - r^2/d^2 is twice the overlap in diameters, to first order.
+    // 1 - r^2/d^2 is twice the overlap beyond that in contact, in diameters, to first order.
     apply(tasks_[static_cast<std::size_t>(worker)], parts, static_cast<float>(2.0 * deepest),
           static_cast<float>(parameters.momentum));
   });

@@ -25,6 +25,7 @@ class RandomScene {
     draw_grains();
     draw_relaxation();
     draw_schedule();
+    // Drawn last, so that all else in a scene is as it was before there were contact overlaps.
     relaxation_.contact_overlap = chance(0.5) ? log_uniform(1e-4, 1e-2) : 0.0;
   }
 
