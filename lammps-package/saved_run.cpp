@@ -14,7 +14,7 @@ using spot::message;
 namespace {
 
 constexpr char magic[8] = {'s', 'p', 'o', 't', ' ', 'r', 'u', 'n'};
-constexpr std::int32_t version = 4;
+constexpr std::int32_t version = 5;
 
 /// FNV-1a, of eight bytes at a time: enough to find what was cut off or overwritten.
 class Checksum {
@@ -50,8 +50,10 @@ Bytes head_of(const SavedRun &run, int ranks) {
     append_text(head, name);
     append_text(head, value);
   }
+  spot::append(head, run.window);
   spot::append(head, run.windows);
   spot::append(head, run.drained_mass);
+  spot::append(head, run.windows_after_step);
   spot::append(head, run.drained_after_step);
   spot::append(head, static_cast<std::uint64_t>(ranks));
   return head;
@@ -132,9 +134,13 @@ SavedRun read_run(const char *bytes) {
     const std::string name = take_text(reader);
     run.settings.emplace_back(name, take_text(reader));
   }
+  run.window = reader.take<double>();
   run.windows = reader.take<std::int64_t>();
   run.drained_mass = reader.take<double>();
+  run.windows_after_step = reader.take_all<std::int64_t>();
   run.drained_after_step = reader.take_all<std::int64_t>();
+  if (run.windows_after_step.size() != run.drained_after_step.size() || run.drained_after_step.empty())
+    throw InvalidState("the restart file is damaged: the counts of drained grains do not fit together");
   const auto parts = reader.take<std::uint64_t>();
   const Bytes head = head_of(run, static_cast<int>(parts));
   checksum.add(head.data(), head.size());
