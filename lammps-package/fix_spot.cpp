@@ -125,15 +125,15 @@ struct FixSpot::Model {
   double overlap_after_run = 0.0;
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
-  bigint windows = 0;      // done since the fix was made; the clock of the spots
-  double window = 0.0;     // in time units; until the first step only what it would be
+  bigint windows = 0;   // done since the fix was made; the clock of the spots
+  double window = 0.0;  // in time units; until the first step only what it would be
   int windows_per_step = 1;
   std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
   bool named_unused_forces = false;
   LocalIndices local;
-  std::vector<tagint> leaving;                        // drained grains that LAMMPS still holds, on whichever rank
-  std::deque<Drained> drained = {{0, 0}};             // after each of the last command.average steps, and before
-  std::vector<double> spots;                          // SpotColumn values, a row a spot
+  std::vector<tagint> leaving;             // drained grains that LAMMPS still holds, on whichever rank
+  std::deque<Drained> drained = {{0, 0}};  // after each of the last command.average steps, and before
+  std::vector<double> spots;               // SpotColumn values, a row a spot
   std::vector<double *> rows;
 };
 
@@ -226,9 +226,10 @@ void FixSpot::choose_window() {
   const double ratio = update->dt / window;
   constexpr double most = 1e9;  // an int holds the number of windows in a step
   if (ratio < 0.5 || ratio > most || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
-    error->all(FLERR, message("fix spot: timestep ", update->dt, " must be a whole number of windows of ", window,
-                              ", from 1 to ", most,
-                              model->windows == 0 ? "" : "; the clock of the spots counts in them since the first run"));
+    error->all(
+        FLERR,
+        message("fix spot: timestep ", update->dt, " must be a whole number of windows of ", window, ", from 1 to ",
+                most, model->windows == 0 ? "" : "; the clock of the spots counts in them since the first run"));
   model->windows_per_step = static_cast<int>(std::lround(ratio));
 }
 
@@ -396,9 +397,9 @@ void FixSpot::make_drainage() {
                                                                   model->container, start...);
   };
   const auto windowed = [&](const auto &start) {
-    model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits,
-                                                               model->window, command.threads, model->container,
-                                                               diameter, extent(), start, model->ranks);
+    model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits, model->window,
+                                                               command.threads, model->container, diameter, extent(),
+                                                               start, model->ranks);
   };
   if (model->saved) {
     const SavedRun run = std::move(*model->saved);
@@ -552,8 +553,8 @@ void FixSpot::tell_all_who_leaves() {
     for (const tagint grain : spot::ByteReader(bytes).take_all<tagint>()) model->leaving.push_back(grain);
 }
 
-/// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this. Another fix
-/// may have taken some of them already.
+/// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this. Another
+/// fix may have taken some of them already.
 void FixSpot::pre_exchange() {
   if (model->leaving.empty()) return;
   model->local.assign(atom->tag, atom->nlocal);

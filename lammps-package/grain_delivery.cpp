@@ -81,32 +81,20 @@ std::vector<Bytes> sort_by_meeting(const std::vector<spot::Grain> &grains, int r
 spot::GrainChanges find_changes(const std::vector<spot::Grain> &packing, const std::vector<spot::Grain> &lammps,
                                 spot::Communicator &communicator) {
   const int ranks = communicator.size();
-  struct Known {
-    spot::Grain grain;
-    int owner;
-  };
-  std::unordered_map<std::int64_t, Known> known;
-  const auto ours = communicator.exchange(sort_by_meeting(packing, ranks));
-  for (int rank = 0; rank < ranks; ++rank)
-    for (const auto &grain : ByteReader(ours[static_cast<std::size_t>(rank)]).take_all<Whereabouts>())
-      known.emplace(grain.id, Known{grain.grain(), rank});
+  std::unordered_map<std::int64_t, spot::Grain> known;
+  for (const Bytes &bytes : communicator.exchange(sort_by_meeting(packing, ranks)))
+    for (const auto &place : ByteReader(bytes).take_all<Whereabouts>()) known.emplace(place.id, place.grain());
   spot::GrainChanges changes;
   std::unordered_set<std::int64_t> seen;
   for (const Bytes &bytes : communicator.exchange(sort_by_meeting(lammps, ranks)))
     for (const auto &place : ByteReader(bytes).take_all<Whereabouts>()) {
-      if (!seen.insert(place.id).second)
-        throw spot::InvalidPacking(spot::message("grain ", place.id, " occurs twice"));
+      if (!seen.insert(place.id).second) throw spot::InvalidPacking(spot::message("grain ", place.id, " occurs twice"));
       const auto found = known.find(place.id);
-      if (found != known.end() && found->second.grain == place.grain())
+      if (found != known.end() && found->second == place.grain())
         known.erase(found);
       else
         changes.come.push_back(place.grain());
     }
-  std::vector<std::vector<std::int64_t>> gone(static_cast<std::size_t>(ranks));
-  for (const auto &[id, last] : known) gone[static_cast<std::size_t>(last.owner)].push_back(id);
-  std::vector<Bytes> outgoing(gone.size());
-  for (std::size_t rank = 0; rank < gone.size(); ++rank) spot::append(outgoing[rank], gone[rank]);
-  for (const Bytes &bytes : communicator.exchange(std::move(outgoing)))
-    for (const std::int64_t id : ByteReader(bytes).take_all<std::int64_t>()) changes.gone.push_back(id);
+  for (const auto &[id, last] : known) changes.gone.push_back(id);
   return changes;
 }

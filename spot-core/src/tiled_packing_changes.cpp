@@ -24,7 +24,7 @@ void TiledPacking::change(const std::vector<std::int64_t>& gone, const std::vect
                           const Container& container) {
   cover(come, container);
   std::vector<Grain> incoming = take_own(come);
-  take_out(gone, incoming);
+  take_out(of_all_ranks(gone), incoming);
   require_new_ids(incoming);
   std::vector<Place> places;
   for (const Grain& grain : incoming) {
@@ -42,15 +42,26 @@ void TiledPacking::change(const std::vector<std::int64_t>& gone, const std::vect
   for (const Place& place : places) find_larger_overlap(slot(place), least, largest_overlap_of_new_);
 }
 
-/// Takes grains out of this rank's layers. One that stays where it is under another id, or as a held one or no longer
-/// as one, keeps what is remembered of it, and is taken off `incoming`.
-void TiledPacking::take_out(const std::vector<std::int64_t>& gone, std::vector<Grain>& incoming) {
-  const std::unordered_set<std::int64_t> ids(gone.begin(), gone.end());
+std::unordered_set<std::int64_t> TiledPacking::of_all_ranks(const std::vector<std::int64_t>& ids) const {
+  Bytes own;
+  append(own, ids);
+  std::unordered_set<std::int64_t> all;
+  for (const Bytes& bytes :
+       communicator_->exchange(std::vector<Bytes>(static_cast<std::size_t>(communicator_->size()), own)))
+    for (const auto id : ByteReader(bytes).take_all<std::int64_t>()) all.insert(id);
+  return all;
+}
+
+/// Takes those of these grains out that this rank has. One that stays where it is under another id, or as a held one or
+/// no longer as one, keeps what is remembered of it, and is taken off `incoming`.
+void TiledPacking::take_out(const std::unordered_set<std::int64_t>& gone, std::vector<Grain>& incoming) {
   std::map<std::array<std::int64_t, 3>, std::uint32_t> slot_at;
-  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot)
-    if (occupied(slot) && ids.count(ids_[slot]) != 0) slot_at[quanta(position(slot) - low_)] = slot;
-  if (slot_at.size() != ids.size())
-    throw InvalidPacking(message(ids.size() - slot_at.size(), " of the ", ids.size(),
+  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_ && !gone.empty(); ++slot)
+    if (occupied(slot) && gone.count(ids_[slot]) != 0) slot_at[quanta(position(slot) - low_)] = slot;
+  const std::int64_t missing =
+      static_cast<std::int64_t>(gone.size()) - communicator_->sum(static_cast<std::int64_t>(slot_at.size()));
+  if (missing != 0)
+    throw InvalidPacking(message(missing, " of the ", gone.size(),
                                  " grains that are to be taken out are not there, or not alone in their places"));
   const auto stays = [&](const Grain& grain) {
     const auto found = slot_at.find(quanta(grain.position - low_));

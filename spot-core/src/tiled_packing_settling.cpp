@@ -18,8 +18,8 @@ namespace {
 /// A grain of the packing hangs if it finds nobody lower than itself by the second, no farther away than the first.
 constexpr double reach_of_support = 1.5, least_drop = 0.25;
 
-/// Walls bear a grain from so far away, if their normal points upwards by so much.
-constexpr double wall_reach = 1.0, least_upwards = 0.1;
+/// Walls bear a grain from so far away, if their normal points upwards by the second; by the third, they are a floor.
+constexpr double wall_reach = 1.0, least_upwards = 0.1, flat = 0.99;
 
 /// A grain that touches nobody falls faster and faster, up to so far a sweep; how much less each grain falls is drawn
 /// once, so that a lattice comes apart on its way. One that touches others, rolls.
@@ -39,10 +39,18 @@ constexpr int most_pushes = 8;
 /// A grain that comes down by less than this share of a roll creeps. It has come to rest after so many sweeps of that,
 /// as grains do that lean on each other, or so many times as many of any that do not end in a free fall.
 constexpr double creeping = 0.1;
-constexpr int patience = 128, patience_with_rolls = 8;
+constexpr int patience = 512, patience_with_rolls = 8;
 
 /// Sweeps after which even the last grain lies where it is; and to part those that lie.
 constexpr int most_sweeps = 20000, most_parting_sweeps = 2000;
+
+/// How far grains go down in a sweep while they press on each other, for how many sweeps, and how near grains are that
+/// bear some of it. It takes half a diameter to make a bed as dense as one that is poured.
+constexpr double press = 0.01, reach_of_pressing = 0.5;
+constexpr int pressing_sweeps = 50;
+
+/// Grains that overlap others by more press on nobody else.
+constexpr double overlap_pressed = 0.01;
 
 /// Of an overlap, what each of two grains that lie goes, and one against any other grain.
 constexpr float pair_share = 0.4f, fixed_share = 0.8f;
@@ -65,7 +73,7 @@ std::size_t TiledPacking::settle(bool everybody, std::uint64_t seed, double in_c
     sweep_falling({seed, sweep, in_contact, sweep + 1 == most_sweeps}, container);
     update_falling(container, workers);
   }
-  part_laid(in_contact, container, workers);
+  press_together(in_contact, container, workers);
   return static_cast<std::size_t>(settled);
 }
 
@@ -140,12 +148,15 @@ void TiledPacking::note_neighbours_above(std::uint32_t at) {
 
 /// What falls on the ranks below and above may have borne grains here.
 void TiledPacking::note_above_falling_copies() {
-  const auto note = [this](std::uint32_t first, std::uint32_t last) {
-    for (std::uint32_t slot = first * capacity_; slot < last * capacity_; ++slot)
-      if (points_[slot].state == Point::falling) note_neighbours_above(slot);
-  };
-  note(0, first_owned());
-  note(last_owned(), cells());
+  visit_copies([this](std::uint32_t at) {
+    if (points_[at].state == Point::falling) note_neighbours_above(at);
+  });
+}
+
+template <typename Visit>
+void TiledPacking::visit_copies(const Visit& visit) const {
+  for (std::uint32_t slot = 0; slot < first_owned() * capacity_; ++slot) visit(slot);
+  for (std::uint32_t slot = last_owned() * capacity_; slot < cells() * capacity_; ++slot) visit(slot);
 }
 
 // ---- how they come down
@@ -238,9 +249,10 @@ std::int32_t TiledPacking::next_state(std::uint32_t at, Point& step, const Settl
   const int time_waited = momenta_[at].state / patience_with_rolls;
   const bool waited = time_waited >= patience;
   const std::vector<Vector3> normals = normals_of_contacts(at, Point::resting, container);
-  if (waited || stands_on_orifice(position(at), 0.5, container) || holds(normals)) {
+  const bool on_floor = lies_on_floor(at, container);
+  if (waited || on_floor || holds(normals)) {
     // On others that rest, only once these lie still, or all lean on each other.
-    const bool still = waited || holds(normals_of_contacts(at, Point::laid, container));
+    const bool still = waited || on_floor || holds(normals_of_contacts(at, Point::laid, container));
     const bool caught = time_waited >= 2 * patience;  // where there is no room for it
     return caught || (still && depth <= overlap_at_rest) ? Point::laid : Point::resting;
   }
@@ -253,14 +265,17 @@ std::int32_t TiledPacking::next_state(std::uint32_t at, Point& step, const Settl
   return Point::falling;
 }
 
+bool TiledPacking::lies_on_floor(std::uint32_t at, const Container& container) const {
+  if (stands_on_orifice(position(at), 0.5, container)) return true;
+  WallContacts walls;
+  if (near_wall_[at] != 0) container.contacts(position(at), (0.5 + contact_gap) * diameter_, walls);
+  return std::any_of(walls.begin(), walls.end(), [](const WallContact& wall) { return wall.normal.z() > flat; });
+}
+
 /// From everything that a grain touches to the grain; of grains that come down, those that are `least` at rest.
 std::vector<Vector3> TiledPacking::normals_of_contacts(std::uint32_t at, std::int32_t least,
                                                        const Container& container) const {
-  struct Contact {
-    std::int64_t id;
-    Vector3 normal;
-  };
-  std::vector<Contact> contacts;
+  std::vector<Vector3> normals;
   const double reach = (1.0 + contact_gap) * diameter_ / quantum_.length();
   const std::uint32_t* list = lists_.data() + static_cast<std::size_t>(at) * list_capacity_;
   for (std::uint32_t k = 0; k < list_size_[at]; ++k) {
@@ -269,12 +284,8 @@ std::vector<Vector3> TiledPacking::normals_of_contacts(std::uint32_t at, std::in
     if (!bears || squared_distance(points_[at], other) > square(reach)) continue;
     const Point by = minus(points_[at], other);
     const Vector3 normal = Vector3(by.x, by.y, by.z);
-    if (normal.squaredNorm() > 0.0) contacts.push_back({ids_[list[k]], normal.normalized()});
+    if (normal.squaredNorm() > 0.0) normals.push_back(normal.normalized());
   }
-  // Rounding goes with the order.
-  std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return a.id < b.id; });
-  std::vector<Vector3> normals;
-  for (const Contact& contact : contacts) normals.push_back(contact.normal);
   WallContacts walls;
   if (near_wall_[at] != 0) container.contacts(position(at), (0.5 + contact_gap) * diameter_, walls);
   for (const WallContact& wall : walls) normals.push_back(wall.normal);
@@ -294,31 +305,58 @@ void TiledPacking::move_falling(std::uint32_t at, const Point& by, std::int32_t 
   note_change(at);
 }
 
-/// Grains that came to lie against each other, or were caught, are parted in sweeps as all grains are, with those that
-/// were there before held.
-void TiledPacking::part_laid(double in_contact, const Container& container, Workers& workers) {
-  const auto set_state = [this](std::int32_t state) {
-    for (const Place& place : falling_) {
-      points_[slot(place)].state = state;
-      momenta_[slot(place)] = {0, 0, 0, 0};
-      note_change(slot(place));
-    }
-  };
-  set_state(Point::due);
-  for (int sweep = 0; sweep < most_parting_sweeps; ++sweep) {
-    choose_sent(no_cell);
-    exchange_border(container);
-    const double deepest = part_laid_once(in_contact, container);
-    if (communicator_->least(std::vector<double>{-deepest})[0] >= -overlap_at_rest) break;
+/// Nobody bore what was still coming down, so that all lie as if each had been put into its place by itself, which is
+/// looser than a poured bed. Now they press on each other and on those that they have come to lie on, and all are
+/// parted in sweeps as grains are in flow.
+void TiledPacking::press_together(double in_contact, const Container& container, Workers& workers) {
+  take_along_neighbours(container);
+  for (int sweep = 0; sweep < pressing_sweeps + most_parting_sweeps; ++sweep) {
+    const double deepest = part_laid(in_contact, sweep < pressing_sweeps ? press : 0.0, container);
     update_falling(container, workers);
+    const double of_all = -communicator_->least(std::vector<double>{-deepest})[0];
+    if (sweep >= pressing_sweeps && of_all <= overlap_at_rest) break;
   }
-  set_state(Point::free);
+  for (const Place& place : falling_) set_state(slot(place), Point::free);
   falling_.clear();
   update_falling(container, workers);
 }
 
-/// Returns the deepest overlap that this rank's grains had, in diameters, less that in contact.
-double TiledPacking::part_laid_once(double in_contact, const Container& container) {
+/// Each rank finds its own neighbours of all that has come down, here and on the ranks below and above.
+void TiledPacking::take_along_neighbours(const Container& container) {
+  const double reach = square((1.0 + reach_of_pressing) * diameter_ / quantum_.length());
+  std::vector<std::uint32_t> found;
+  const auto find = [&](std::uint32_t at) {
+    const std::uint32_t* list = list_of(at);
+    for (std::uint32_t k = 0; k < list_size_[at]; ++k)
+      if (owned(list[k] / capacity_) && points_[list[k]].state == Point::free &&
+          squared_distance(points_[at], points_[list[k]]) <= reach)
+        found.push_back(list[k]);
+  };
+  for (const Place& place : falling_) find(slot(place));
+  visit_copies([&](std::uint32_t at) {
+    if (points_[at].state == Point::laid) find(at);
+  });
+  for (const std::uint32_t at : found) falling_.push_back({at / capacity_, at % capacity_});
+  for (const Place& place : falling_) set_state(slot(place), Point::due);
+  keep_falling();
+  choose_sent(no_cell);
+  exchange_border(container);
+}
+
+/// How deep a grain has sunk into the orifice, which is a floor until spots come, in diameters.
+double TiledPacking::depth_in_orifice(const Vector3& at, const Container& container) const {
+  return stands_on_orifice(at, 0.5, container) ? 0.5 - (at.z() - container.orifice().centre.z()) / diameter_ : 0.0;
+}
+
+void TiledPacking::set_state(std::uint32_t at, std::int32_t state) {
+  points_[at].state = state;
+  momenta_[at] = {0, 0, 0, 0};
+  note_change(at);
+}
+
+/// Moves grains down by `down` diameters and off each other. Returns the deepest overlap that they had, in diameters,
+/// less that in contact.
+double TiledPacking::part_laid(double in_contact, double down, const Container& container) {
   Task task;
   for (const Place& place : falling_) task.active.push_back(slot(place));
   task.grains = static_cast<std::uint32_t>(falling_.size());
@@ -335,8 +373,15 @@ double TiledPacking::part_laid_once(double in_contact, const Container& containe
   push_off_other_walls(task, fixed_share, container);
   double deepest = 0.0;
   for (std::uint32_t k = 0; k < task.grains; ++k) {
-    deepest = std::max(deepest, 0.5 * static_cast<double>(depth_of(task.pushes[k])));
-    move_falling(task.active[k], task.pushes[k], Point::due);
+    const std::uint32_t at = task.active[k];
+    const double depth = 0.5 * static_cast<double>(depth_of(task.pushes[k]));
+    const double through = depth_in_orifice(position(at), container);
+    deepest = std::max(deepest, depth);
+    if (through > 0.0)
+      push(task.pushes[k], {0.0, 0.0, fixed_share * through * diameter_});
+    else if (depth <= overlap_pressed)
+      push(task.pushes[k], {0.0, 0.0, -down * diameter_});
+    move_falling(at, task.pushes[k], Point::due);
   }
   return deepest;
 }

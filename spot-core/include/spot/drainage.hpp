@@ -33,9 +33,10 @@ struct Counters {
 };
 
 /// What somebody else has done to the grains. One that was moved, or is held now and was not, is among both.
+/// Each is named by one rank, whichever.
 struct GrainChanges {
-  std::vector<std::int64_t> gone;  ///< ids; of grains of this rank
-  std::vector<Grain> come;         ///< each brought by one rank, whichever
+  std::vector<std::int64_t> gone;  ///< ids
+  std::vector<Grain> come;
 };
 
 /// How a drainage starts and ends.

@@ -8,8 +8,8 @@
 namespace spot {
 
 /// Do contacts with these unit normals, each pointing to the grain, hold it without friction against gravity, which
-/// points to -z? They do if no way down is open: if up is a sum of normals with positive weights. Slopes of less than
-/// some three degrees count as level.
+/// points to -z, even if the ground is tilted a little? Then no way down is open, and the grain is neither on top of
+/// another nor on the saddle between two. Ways that are nearly level do not count.
 bool holds(const std::vector<Vector3>& normals);
 
 }  // namespace spot

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -280,7 +281,8 @@ class TiledPacking {
   // Others' changes.
   void cover(const std::vector<Grain>& come, const Container& container);
   void grow(const std::array<int, 3>& below, const std::array<int, 3>& above, const Container& container);
-  void take_out(const std::vector<std::int64_t>& gone, std::vector<Grain>& incoming);
+  std::unordered_set<std::int64_t> of_all_ranks(const std::vector<std::int64_t>& ids) const;
+  void take_out(const std::unordered_set<std::int64_t>& gone, std::vector<Grain>& incoming);
   void require_new_ids(const std::vector<Grain>& incoming) const;
 
   // Grains that come down.
@@ -291,6 +293,8 @@ class TiledPacking {
   void start_falling(std::uint32_t at);
   void note_neighbours_above(std::uint32_t at);
   void note_above_falling_copies();
+  template <typename Visit>
+  void visit_copies(const Visit& visit) const;
   void update_falling(const Container& container, Workers& workers);
   void keep_falling();
   void sweep_falling(const Settling& settling, const Container& container);
@@ -298,9 +302,13 @@ class TiledPacking {
   double push_off_bearers(std::uint32_t at, const Point& place, double in_contact, const Container& container,
                           Point& push) const;
   void part_from_bearers(std::uint32_t at, Point& step, double in_contact, const Container& container) const;
+  bool lies_on_floor(std::uint32_t at, const Container& container) const;
   std::vector<Vector3> normals_of_contacts(std::uint32_t at, std::int32_t least, const Container& container) const;
-  void part_laid(double in_contact, const Container& container, Workers& workers);
-  double part_laid_once(double in_contact, const Container& container);
+  void press_together(double in_contact, const Container& container, Workers& workers);
+  void take_along_neighbours(const Container& container);
+  void set_state(std::uint32_t at, std::int32_t state);
+  double depth_in_orifice(const Vector3& at, const Container& container) const;
+  double part_laid(double in_contact, double down, const Container& container);
   void move_falling(std::uint32_t at, const Point& by, std::int32_t state);
 
   // Moves.
