@@ -107,7 +107,7 @@ struct FixSpot::Model {
   double overlap_after_run = 0.0;
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
-  bigint windows = 0;  // done since the fix was made; the clock of the spots
+  std::int64_t windows = 0;  // done since the fix was made; the clock of the spots
   int windows_per_step = 1;
   LocalIndices local;
   std::vector<tagint> leaving;                        // drained grains that LAMMPS still holds, on whichever rank
@@ -139,6 +139,7 @@ FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg)
 
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, std::string("fix spot needs grains with a radius: use atom_style sphere"));
+  if (!atom->tag_enable) error->all(FLERR, std::string("fix spot needs grains with IDs: leave out 'atom_modify id no'"));
   if (lmp->kokkos) error->all(FLERR, std::string("fix spot does not work with the KOKKOS package"));
   if (domain->dimension != 3) error->all(FLERR, std::string("fix spot needs a simulation in 3 dimensions"));
   try {
@@ -213,7 +214,7 @@ void FixSpot::check_other_fixes() {
 void FixSpot::check_grains() {
   if (atom->natoms == 0) {
     // A silo that ran empty is no error, but without a single grain there is no diameter to start from.
-    if (!model->drainage) error->all(FLERR, std::string("fix spot: there are no grains"));
+    if (!(model->diameter > 0.0)) error->all(FLERR, std::string("fix spot: there are no grains"));
     return;
   }
   // One rank may hold none. NaN is no number that is least, so a diameter that is none is found below.
@@ -547,6 +548,7 @@ double FixSpot::mean_outflow() const {
 void FixSpot::write_restart(FILE *file) {
   SavedRun run;
   MPI_Allreduce(&model->drained_mass, &run.drained_mass, 1, MPI_DOUBLE, MPI_SUM, world);
+  run.diameter = model->diameter;
   run.windows = model->windows;
   run.drained_after_step.assign(model->drained_after_step.begin(), model->drained_after_step.end());
   try {
@@ -565,6 +567,7 @@ void FixSpot::restart(char *bytes) {
   } catch (const spot::Error &e) {
     fail(e);
   }
+  model->diameter = model->saved->diameter;
   model->windows = model->saved->windows;
   model->drained_mass = comm->me == 0 ? model->saved->drained_mass : 0.0;
   const auto &totals = model->saved->drained_after_step;
