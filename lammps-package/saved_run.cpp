@@ -76,7 +76,9 @@ Header take_header(const char *bytes) {
   if (std::memcmp(header.magic, magic, sizeof magic) != 0)
     throw InvalidState("the restart file holds no state of fix spot, or is damaged");
   std::memcpy(&header.complement, bytes + offsetof(Header, complement), sizeof header.complement);
-  if (header.version != version && header.complement != ~version)
+  const bool newer = header.version != version && header.complement == ~header.version;
+  const bool older = header.version > 0 && header.version < 5 && header.complement != ~version;
+  if (newer || older)
     throw InvalidState(message("the restart file is of format ", header.version, " of fix spot, but this one knows ",
                                version, " only: go on with the fix spot that wrote it, or give the fix another ID to "
                                "start anew from its grains, without spots"));
