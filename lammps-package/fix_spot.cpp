@@ -41,6 +41,16 @@ enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
 /// Columns of the output per atom, after the displacement along x, y and z.
 enum GrainColumn { MOVES = 3, GRAIN_COLUMNS };
 
+/// What a grain has in a restart file: the number of these, its columns, and a checksum.
+constexpr int GRAIN_RECORD = 1 + GRAIN_COLUMNS + 1;
+
+/// Of a grain's columns and whose they are; a whole number that a double holds.
+double checksum_of(tagint grain, const double *columns) {
+  double all[1 + GRAIN_COLUMNS] = {static_cast<double>(grain)};
+  std::copy_n(columns, +GRAIN_COLUMNS, all + 1);
+  return static_cast<double>(spot::checksum(reinterpret_cast<const char *>(all), sizeof all) >> 12);
+}
+
 /// Of all that a grain is, to the quantum: LAMMPS rounds positions when it balances its ranks.
 std::uint64_t hash_of(const spot::Grain &grain, const spot::Quantum &quantum) {
   std::uint64_t hash = static_cast<std::uint64_t>(grain.id) * 2 + (grain.held ? 1 : 0);
@@ -618,20 +628,29 @@ int FixSpot::unpack_exchange(int i, double *buffer) {
 
 /// In a restart file the values of each fix come after their number, which counts itself.
 int FixSpot::pack_restart(int i, double *buffer) {
-  buffer[0] = GRAIN_COLUMNS + 1;
-  return 1 + pack_exchange(i, buffer + 1);
+  buffer[0] = GRAIN_RECORD;
+  pack_exchange(i, buffer + 1);
+  buffer[GRAIN_RECORD - 1] = checksum_of(atom->tag[i], array_atom[i]);
+  return GRAIN_RECORD;
 }
 
 void FixSpot::unpack_restart(int i, int nth) {
   if (!peratom_flag) return;
-  double *values = atom->extra[i];
-  for (; nth > 0; --nth) values += static_cast<int>(*values);
-  unpack_exchange(i, values + 1);
+  // The records of other fixes come before; lengths that are damaged lead anywhere.
+  double *values = atom->extra[i], at = 0.0;
+  const double last = atom->nextra_store - GRAIN_RECORD;
+  for (; nth > 0 && at >= 0.0 && at <= last; --nth) at += std::trunc(values[static_cast<int>(at)]);
+  if (at >= 0.0 && at <= last) {
+    values += static_cast<int>(at);
+    unpack_exchange(i, values + 1);
+    if (values[0] == GRAIN_RECORD && values[GRAIN_RECORD - 1] == checksum_of(atom->tag[i], array_atom[i])) return;
+  }
+  error->one(FLERR, message("fix spot: the restart file is damaged: what it has of grain ", atom->tag[i]));
 }
 
-int FixSpot::size_restart(int) { return GRAIN_COLUMNS + 1; }
+int FixSpot::size_restart(int) { return GRAIN_RECORD; }
 
-int FixSpot::maxsize_restart() { return GRAIN_COLUMNS + 1; }
+int FixSpot::maxsize_restart() { return GRAIN_RECORD; }
 
 double FixSpot::memory_usage() {
   const Model &m = *model;
