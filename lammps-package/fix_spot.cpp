@@ -149,7 +149,8 @@ FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg)
 
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, std::string("fix spot needs grains with a radius: use atom_style sphere"));
-  if (!atom->tag_enable) error->all(FLERR, std::string("fix spot needs grains with IDs: leave out 'atom_modify id no'"));
+  if (!atom->tag_enable)
+    error->all(FLERR, std::string("fix spot needs grains with IDs: leave out 'atom_modify id no'"));
   if (lmp->kokkos) error->all(FLERR, std::string("fix spot does not work with the KOKKOS package"));
   if (domain->dimension != 3) error->all(FLERR, std::string("fix spot needs a simulation in 3 dimensions"));
   try {

@@ -80,7 +80,8 @@ Header take_header(const char *bytes) {
   const bool older = header.version > 0 && header.version < 5 && header.complement != ~version;
   if (newer || older)
     throw InvalidState(message("the restart file is of format ", header.version, " of fix spot, but this one knows ",
-                               version, " only: go on with the fix spot that wrote it, or give the fix another ID to "
+                               version,
+                               " only: go on with the fix spot that wrote it, or give the fix another ID to "
                                "start anew from its grains, without spots"));
   std::memcpy(&header, bytes, sizeof header);
   if (header.version != version || header.complement != ~version || header.checksum != header.expected_checksum())
@@ -89,8 +90,7 @@ Header take_header(const char *bytes) {
 }
 
 void write(const void *bytes, std::size_t n, std::FILE *file) {
-  if (std::fwrite(bytes, 1, n, file) != n)
-    throw InvalidState("the restart file cannot be written: is the disk full?");
+  if (std::fwrite(bytes, 1, n, file) != n) throw InvalidState("the restart file cannot be written: is the disk full?");
 }
 
 }  // namespace

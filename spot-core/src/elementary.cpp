@@ -128,13 +128,14 @@ double of_turns(double turns, bool sine) {
   if (std::abs(turns) >= 0x1p53) return sine ? 0.0 : 1.0;
   const double quarter = std::nearbyint(4.0 * turns);
   const double rest = turns - 0.25 * quarter;  // exact
-  const double number = quarter - 4.0 * std::floor(0.25 * quarter) + (sine ? 3.0 : 0.0);  // cosine of 3 quarters more
+  // The sine is the cosine three quarters farther on.
+  const double number = quarter - 4.0 * std::floor(0.25 * quarter) + (sine ? 3.0 : 0.0);
   const bool odd = number == 1.0 || number == 3.0 || number == 5.0;
   if (odd && rest == 0.0) return 0.0;
   const Wide angle = two_pi * wide(rest), minus_square = -(angle * angle);
   // The series of the sine has 1/n! for odd n, with alternating signs.
-  const Wide value = odd ? angle * series(inverse_factorials, 1, 2, minus_square)
-                         : series(inverse_factorials, 0, 2, minus_square);
+  const Wide value =
+      odd ? angle * series(inverse_factorials, 1, 2, minus_square) : series(inverse_factorials, 0, 2, minus_square);
   return number == 1.0 || number == 2.0 || number == 5.0 || number == 6.0 ? -value.high : value.high;
 }
 

@@ -57,8 +57,8 @@ Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) c
   const Orifice& orifice = container.orifice();
   const double from_axis = std::max(0.0, orifice.radius - parameters_.radius) * std::sqrt(numbers[1]);
   Spot spot{id, 0, orifice.centre, time};
-  spot.position += Vector3(from_axis * cos_of_turns(numbers[2]), from_axis * sin_of_turns(numbers[2]),
-                           -parameters_.radius);
+  spot.position +=
+      Vector3(from_axis * cos_of_turns(numbers[2]), from_axis * sin_of_turns(numbers[2]), -parameters_.radius);
   draw_next_step(spot);
   return spot;
 }

@@ -32,8 +32,8 @@ Workers::Workers(int threads, std::uint64_t rounds) : first_round_(rounds), roun
     for (int k = 1; k < threads; ++k) helpers_.emplace_back([this, k] { help(k); });
   } catch (const std::system_error& error) {
     stop();
-    throw InvalidParameter(message("number of threads is ", threads, " but the system starts no more than ", size(),
-                                   ": ", error.what()));
+    throw InvalidParameter(
+        message("number of threads is ", threads, " but the system starts no more than ", size(), ": ", error.what()));
   }
 }
 

@@ -84,33 +84,21 @@ TEST(ElementaryUnit, GivesTheKnownBits) {
   };
   expect_known(of_cbrt, spot::cbrt);
   const Known of_cos = {
-      {0x1.999999999999ap-4, 0x1.9e3779b97f4a8p-1},
-      {0x1p-3, 0x1.6a09e667f3bcdp-1},
-      {0x1.3333333333333p-2, -0x1.3c6ef372fe94ep-2},
-      {0x1.0a3d70a3d70a4p-2, -0x1.0130a1be0937dp-4},
-      {0x1.fffffca501acbp-1, 0x1.ffffffffff90ep-1},
-      {-0x1.b333333333333p+0, -0x1.3c6ef372fe954p-2},
-      {0x1.fd874dc436b4cp-1, 0x1.ffc3b82faad33p-1},
-      {0x1.f605ce7ac76cep-2, -0x1.ff0a7462acd65p-1},
-      {0x1.e3da4ab5af221p-1, 0x1.e1c20b3019c11p-1},
-      {0x1.33336990d0b60p-6, 0x1.fc7376c16c9cap-1},
-      {0x1.1f5f1b88b0208p-3, 0x1.4592677a60496p-1},
-      {0x1.60a7839d32460p-3, 0x1.e0e574e42426ep-2},
+      {0x1.999999999999ap-4, 0x1.9e3779b97f4a8p-1},  {0x1p-3, 0x1.6a09e667f3bcdp-1},
+      {0x1.3333333333333p-2, -0x1.3c6ef372fe94ep-2}, {0x1.0a3d70a3d70a4p-2, -0x1.0130a1be0937dp-4},
+      {0x1.fffffca501acbp-1, 0x1.ffffffffff90ep-1},  {-0x1.b333333333333p+0, -0x1.3c6ef372fe954p-2},
+      {0x1.fd874dc436b4cp-1, 0x1.ffc3b82faad33p-1},  {0x1.f605ce7ac76cep-2, -0x1.ff0a7462acd65p-1},
+      {0x1.e3da4ab5af221p-1, 0x1.e1c20b3019c11p-1},  {0x1.33336990d0b60p-6, 0x1.fc7376c16c9cap-1},
+      {0x1.1f5f1b88b0208p-3, 0x1.4592677a60496p-1},  {0x1.60a7839d32460p-3, 0x1.e0e574e42426ep-2},
   };
   expect_known(of_cos, spot::cos_of_turns);
   const Known of_sin = {
-      {0x1.999999999999ap-4, 0x1.2cf2304755a5ep-1},
-      {0x1p-3, 0x1.6a09e667f3bcdp-1},
-      {0x1.3333333333333p-2, 0x1.e6f0e13445500p-1},
-      {0x1.051eb851eb852p-1, -0x1.0130a1be0937dp-4},
-      {0x1.56e1fc2f8f359p-997, 0x1.0d4cab14b6bc0p-994},
-      {-0x1.b333333333333p+0, 0x1.e6f0e134454ffp-1},
-      {0x1.e04a07323d03ap-1, -0x1.84821556777d2p-2},
-      {0x1.61873e7605a5cp-1, -0x1.dc9e1eea1bcbfp-1},
-      {0x1.702b8f811cc62p-1, -0x1.f65e9aa02616dp-1},
-      {0x1.257ef6c3d691ep-2, 0x1.f2823dccea420p-1},
-      {0x1.fadd5e136a916p-2, 0x1.0215b4126d922p-5},
-      {0x1.c62d5936c17b3p-1, -0x1.4d94b7090016dp-1},
+      {0x1.999999999999ap-4, 0x1.2cf2304755a5ep-1},     {0x1p-3, 0x1.6a09e667f3bcdp-1},
+      {0x1.3333333333333p-2, 0x1.e6f0e13445500p-1},     {0x1.051eb851eb852p-1, -0x1.0130a1be0937dp-4},
+      {0x1.56e1fc2f8f359p-997, 0x1.0d4cab14b6bc0p-994}, {-0x1.b333333333333p+0, 0x1.e6f0e134454ffp-1},
+      {0x1.e04a07323d03ap-1, -0x1.84821556777d2p-2},    {0x1.61873e7605a5cp-1, -0x1.dc9e1eea1bcbfp-1},
+      {0x1.702b8f811cc62p-1, -0x1.f65e9aa02616dp-1},    {0x1.257ef6c3d691ep-2, 0x1.f2823dccea420p-1},
+      {0x1.fadd5e136a916p-2, 0x1.0215b4126d922p-5},     {0x1.c62d5936c17b3p-1, -0x1.4d94b7090016dp-1},
   };
   expect_known(of_sin, spot::sin_of_turns);
   struct Power {
@@ -181,9 +169,12 @@ long double cosine_of_turns(long double x) {
 TEST(ElementaryBruteForce, ExpIsCorrectlyRounded) {
   scenes::Draws draws(1);
   const auto exact = [](long double x) { return std::exp(x); };
-  expect_accurate("exp", n_draws, [&] { return draws.uniform(-708.0, 709.0); }, spot::exp, exact);
-  expect_accurate("exp", n_draws, [&] { return draws.uniform(-1.0, 1.0); }, spot::exp, exact);
-  expect_accurate("exp", n_draws, [&] { return std::ldexp(draws.uniform(-1.0, 1.0), -40); }, spot::exp, exact);
+  expect_accurate(
+      "exp", n_draws, [&] { return draws.uniform(-708.0, 709.0); }, spot::exp, exact);
+  expect_accurate(
+      "exp", n_draws, [&] { return draws.uniform(-1.0, 1.0); }, spot::exp, exact);
+  expect_accurate(
+      "exp", n_draws, [&] { return std::ldexp(draws.uniform(-1.0, 1.0), -40); }, spot::exp, exact);
 }
 
 TEST(ElementaryBruteForce, LogIsCorrectlyRounded) {
@@ -191,18 +182,24 @@ TEST(ElementaryBruteForce, LogIsCorrectlyRounded) {
   const auto exact = [](long double x) { return std::log(x); };
   const auto any = [&] { return std::ldexp(draws.uniform(0.5, 1.0), static_cast<int>(draws.below(2000)) - 1000); };
   expect_accurate("log", n_draws, any, spot::log, exact);
-  expect_accurate("log", n_draws, [&] { return draws.uniform(0.5, 1.5); }, spot::log, exact);
-  expect_accurate("log", n_draws, [&] { return 1.0 + std::ldexp(draws.uniform(-1.0, 1.0), -30); }, spot::log, exact);
+  expect_accurate(
+      "log", n_draws, [&] { return draws.uniform(0.5, 1.5); }, spot::log, exact);
+  expect_accurate(
+      "log", n_draws, [&] { return 1.0 + std::ldexp(draws.uniform(-1.0, 1.0), -30); }, spot::log, exact);
 }
 
 /// What waiting times are made of: uniform numbers that are multiples of 2^-53, and small ones.
 TEST(ElementaryBruteForce, Log1pIsCorrectlyRounded) {
   scenes::Draws draws(3);
   const auto exact = [](long double x) { return std::log1p(x); };
-  expect_accurate("log1p", n_draws, [&] { return -draws.uniform(0.0, 1.0); }, spot::log1p, exact);
-  expect_accurate("log1p", n_draws, [&] { return std::ldexp(draws.uniform(-1.0, 1.0), -30); }, spot::log1p, exact);
-  expect_accurate("log1p", n_draws, [&] { return std::ldexp(draws.uniform(-1.0, 1.0), -59); }, spot::log1p, exact);
-  expect_accurate("log1p", n_draws, [&] { return draws.uniform(0.0, 1e6); }, spot::log1p, exact);
+  expect_accurate(
+      "log1p", n_draws, [&] { return -draws.uniform(0.0, 1.0); }, spot::log1p, exact);
+  expect_accurate(
+      "log1p", n_draws, [&] { return std::ldexp(draws.uniform(-1.0, 1.0), -30); }, spot::log1p, exact);
+  expect_accurate(
+      "log1p", n_draws, [&] { return std::ldexp(draws.uniform(-1.0, 1.0), -59); }, spot::log1p, exact);
+  expect_accurate(
+      "log1p", n_draws, [&] { return draws.uniform(0.0, 1e6); }, spot::log1p, exact);
 }
 
 TEST(ElementaryBruteForce, PowIsCorrectlyRounded) {
@@ -211,8 +208,10 @@ TEST(ElementaryBruteForce, PowIsCorrectlyRounded) {
   for (const double exponent : {-3.0, -1.5, -0.25, 1e-3, 0.35, 0.5, 1.0, 1.7, 2.0, 4.0}) {
     const auto power = [&](double base) { return spot::pow(base, exponent); };
     const auto exact = [&](long double base) { return std::pow(base, static_cast<long double>(exponent)); };
-    expect_accurate("pow", n_draws / 10, [&] { return draws.uniform(1e-3, 2.0); }, power, exact);
-    expect_accurate("pow", n_draws / 10, [&] { return draws.uniform(1.0, 1e3); }, power, exact);
+    expect_accurate(
+        "pow", n_draws / 10, [&] { return draws.uniform(1e-3, 2.0); }, power, exact);
+    expect_accurate(
+        "pow", n_draws / 10, [&] { return draws.uniform(1.0, 1e3); }, power, exact);
   }
 }
 
