@@ -7,6 +7,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "force.h"
 #include "memory.h"
 #include "modify.h"
 #include "region.h"
@@ -51,16 +52,28 @@ double checksum_of(tagint grain, const double *columns) {
   return static_cast<double>(spot::checksum(reinterpret_cast<const char *>(all), sizeof all) >> 12);
 }
 
-/// Of all that a grain is, to the quantum: LAMMPS rounds positions when it balances its ranks.
-std::uint64_t hash_of(const spot::Grain &grain, const spot::Quantum &quantum) {
+std::uint64_t bits_of(double value) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+/// Of all that a grain is, its position to the quantum: LAMMPS rounds positions when it balances its ranks.
+std::uint64_t hash_of(const spot::Grain &grain, double radius, const spot::Quantum &quantum) {
   std::uint64_t hash = static_cast<std::uint64_t>(grain.id) * 2 + (grain.held ? 1 : 0);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double at = quantum.snap(grain.position[axis]) + 0.0;  // no negative zero
-    std::uint64_t bits;
-    std::memcpy(&bits, &at, sizeof bits);
-    hash = (hash ^ (hash >> 29) ^ bits) * 0x9e3779b97f4a7c15u;
-  }
+  const auto mix = [&hash](double value) {
+    hash = (hash ^ (hash >> 29) ^ bits_of(value + 0.0)) * 0x9e3779b97f4a7c15u;  // no negative zero
+  };
+  for (const double at : grain.position) mix(quantum.snap(at));
+  mix(radius);
   return hash ^ (hash >> 32);
+}
+
+/// Two halves, so that sums over ranks don't overflow.
+void count_hash(std::vector<std::int64_t> &sums, std::uint64_t hash, int sign) {
+  sums[0] += sign;
+  sums[1] += sign * static_cast<std::int64_t>(hash & 0xffffffffu);
+  sums[2] += sign * static_cast<std::int64_t>(hash >> 32);
 }
 
 enum BoundaryKind { PERIODIC = 0, FIXED = 1 };  // as in domain.h
@@ -107,6 +120,11 @@ class LocalIndices {
 }  // namespace
 
 struct FixSpot::Model {
+  /// How many grains had left, on all ranks, by a time.
+  struct Drained {
+    std::int64_t windows, grains;
+  };
+
   explicit Model(MPI_Comm world) : ranks(std::make_shared<MpiCommunicator>(world)) {}
 
   SpotCommand command;
@@ -118,10 +136,13 @@ struct FixSpot::Model {
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
   std::int64_t windows = 0;  // done since the fix was made; the clock of the spots
+  double window = 0.0;       // in time units; until the first step only what it would be
   int windows_per_step = 1;
+  std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
+  bool named_unused_forces = false;
   LocalIndices local;
   std::vector<tagint> leaving;                        // drained grains that LAMMPS still holds, on whichever rank
-  std::deque<std::int64_t> drained_after_step = {0};  // on all ranks, over the last command.average steps
+  std::deque<Drained> drained = {{0, 0}};             // after each of the last command.average steps, and before
   std::vector<double> spots;                          // SpotColumn values, a row a spot
   std::vector<double *> rows;
 };
@@ -197,21 +218,29 @@ void FixSpot::check_run() {
                                   domain->boundary[axis][side] == PERIODIC ? "periodic" : "shrink-wrapped"));
 }
 
+/// A window that the command leaves open follows from the timestep of the first run that has steps.
 void FixSpot::choose_window() {
-  const SpotCommand &command = model->command;
-  if (!command.window) {
+  SpotCommand &command = model->command;
+  const bool steps = update->nsteps > 0;
+  double window = command.window.value_or(update->dt);
+  if (!command.window && !*command.time_ordered) {
     // Longer windows relax more of the neighbouring cells at the same time, which is both cheaper and closer to DEM,
     // until grains go too far in one (analysis/README.md).
     const double flow =
         spot::WindowedDrainage::flow_through_orifice(command.spots, 1.0, model->diameter, command.orifice->radius);
     const double longest = std::min(0.32 * model->diameter / command.spots.speed, 0.15 / flow);
-    model->command.window = *command.time_ordered ? update->dt : update->dt / std::ceil(update->dt / longest - 1e-9);
+    window = update->dt / std::ceil(update->dt / longest - 1e-9);
   }
-  const double ratio = update->dt / *model->command.window;
+  if (window != model->window) model->drainage.reset();  // in which there have been no windows yet
+  model->window = window;
+  if (!steps) return;
+  command.window = window;
+  const double ratio = update->dt / window;
   constexpr double most = 1e9;  // an int holds the number of windows in a step
   if (ratio < 0.5 || ratio > most || std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
-    error->all(FLERR, message("fix spot: timestep ", update->dt, " must be a whole number of windows of ",
-                              *model->command.window, ", from 1 to ", most));
+    error->all(FLERR, message("fix spot: timestep ", update->dt, " must be a whole number of windows of ", window,
+                              ", from 1 to ", most,
+                              model->windows == 0 ? "" : "; the clock of the spots counts in them since the first run"));
   model->windows_per_step = static_cast<int>(std::lround(ratio));
 }
 
@@ -220,6 +249,37 @@ void FixSpot::check_other_fixes() {
   for (int i = 0; i < modify->nfix; ++i)
     if (strcmp(modify->fix[i]->style, style) == 0) ++spots;
   if (spots > 1) error->all(FLERR, std::string("only one fix spot can be in use"));
+  check_integrators();
+  if (!model->named_unused_forces) name_unused_forces();
+}
+
+/// Nobody else may move the grains.
+void FixSpot::check_integrators() const {
+  for (int i = 0; i < modify->nfix; ++i) {
+    const Fix &other = *modify->fix[i];
+    if (!other.time_integrate || &other == this) continue;
+    std::int64_t shared = 0;
+    for (int k = 0; k < atom->nlocal; ++k)
+      if ((atom->mask[k] & groupbit) != 0 && (atom->mask[k] & other.groupbit) != 0) ++shared;
+    shared = model->ranks->sum(shared);
+    if (shared > 0 || other.igroup == 0 || other.igroup == igroup)
+      error->all(FLERR, message("fix ", other.id, " (", other.style, ") moves ", shared, " of the grains that fix ", id,
+                                " (spot) moves: leave it out, or 'unfix ", other.id, "'"));
+  }
+}
+
+/// What a deck for DEM brings along, which takes time and changes nothing.
+void FixSpot::name_unused_forces() {
+  model->named_unused_forces = true;
+  std::string unused;
+  const auto add = [&unused](const std::string &what) { unused += (unused.empty() ? "" : ", ") + what; };
+  if (force->pair && strcmp(force->pair_style, "none") != 0 && strcmp(force->pair_style, "zero") != 0)
+    add(message("pair style ", force->pair_style));
+  for (int i = 0; i < modify->nfix; ++i)
+    if ((modify->fmask[i] & POST_FORCE) != 0)
+      add(message("fix ", modify->fix[i]->id, " (", modify->fix[i]->style, ")"));
+  if (!unused.empty() && comm->me == 0)
+    error->warning(FLERR, message("fix spot needs no forces; unused, but for their time: ", unused));
 }
 
 void FixSpot::check_grains() {
@@ -255,6 +315,7 @@ void FixSpot::init() {
     if (*model->command.time_ordered && comm->nprocs > 1)
       throw spot::InvalidParameter(message("relaxation in the order of time runs on 1 MPI rank, not on ", comm->nprocs,
                                            ": use 'accuracy normal', or 'relax tol' with a tolerance"));
+    if (model->saved) go_on_with_saved_window();
     choose_window();
     check_box();
     make_container();
@@ -317,11 +378,14 @@ void FixSpot::make_container() {
    grains between LAMMPS' arrays and the packing
 ------------------------------------------------------------------------- */
 
+spot::Grain FixSpot::grain_of_lammps(int i) const {
+  return {atom->tag[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]}, (atom->mask[i] & groupbit) == 0};
+}
+
 std::vector<spot::Grain> FixSpot::grains_of_lammps() const {
   std::vector<spot::Grain> grains;
   grains.reserve(atom->nlocal);
-  for (int i = 0; i < atom->nlocal; ++i)
-    grains.push_back({atom->tag[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]}, (atom->mask[i] & groupbit) == 0});
+  for (int i = 0; i < atom->nlocal; ++i) grains.push_back(grain_of_lammps(i));
   std::sort(grains.begin(), grains.end(), [](const spot::Grain &a, const spot::Grain &b) { return a.id < b.id; });
   return grains;
 }
@@ -345,7 +409,7 @@ void FixSpot::make_drainage() {
   };
   const auto windowed = [&](const auto &start) {
     model->drainage = std::make_unique<spot::WindowedDrainage>(command.spots, command.relaxation, limits,
-                                                               *command.window, command.threads, model->container,
+                                                               model->window, command.threads, model->container,
                                                                diameter, extent(), start, model->ranks);
   };
   if (model->saved) {
@@ -367,28 +431,55 @@ void FixSpot::setup(int) {
     }
     if (goes_on) {
       if (model->command.uses_region()) model->drainage->replace_container(model->container);
-      if (!grains_are_as_they_were()) model->drainage->replace_grains(grains_of_lammps());
+      if (somebody_changed_grains()) take_changes();
       model->drainage->require_inside();
     }
     write_grains({}, false);
+    remember_grains();
   } catch (const spot::Error &e) {
     fail(e);
   }
   list_spots();
 }
 
-/// Does LAMMPS still have the grains, on whichever ranks, where the fix has left them? Sums of hashes tell.
-bool FixSpot::grains_are_as_they_were() const {
-  std::vector<std::int64_t> differences = {0, 0, 0};
-  const auto count = [&](const spot::Grain &grain, int sign) {
-    const std::uint64_t hash = hash_of(grain, model->drainage->quantum());
-    differences[0] += sign;
-    differences[1] += sign * static_cast<std::int64_t>(hash & 0xffffffffu);
-    differences[2] += sign * static_cast<std::int64_t>(hash >> 32);
-  };
-  for (const spot::Grain &grain : grains_of_lammps()) count(grain, 1);
-  model->drainage->visit_grains([&](const spot::Grain &grain) { count(grain, -1); });
-  return model->ranks->sum(differences) == std::vector<std::int64_t>{0, 0, 0};
+/// One pass over this rank's grains, in the order in which LAMMPS has them.
+std::vector<std::int64_t> FixSpot::hash_of_lammps() const {
+  const spot::Quantum &quantum = model->drainage->quantum();
+  std::vector<std::int64_t> sums = {0, 0, 0};
+  for (int i = 0; i < atom->nlocal; ++i) count_hash(sums, hash_of(grain_of_lammps(i), atom->radius[i], quantum), 1);
+  return sums;
+}
+
+/// After the fix has written what it knows. Those that leave are LAMMPS' until it drops them.
+void FixSpot::remember_grains() {
+  model->remembered = hash_of_lammps();
+  const spot::Quantum &quantum = model->drainage->quantum();
+  for (const tagint grain : model->leaving) {
+    const int i = local_index(grain);
+    count_hash(model->remembered, hash_of(grain_of_lammps(i), atom->radius[i], quantum), -1);
+  }
+}
+
+/// Does LAMMPS still have the grains, on whichever ranks, as the fix has left them? Sums of hashes tell.
+bool FixSpot::somebody_changed_grains() const {
+  if (model->remembered.empty()) return true;
+  std::vector<std::int64_t> differences = hash_of_lammps();
+  for (std::size_t k = 0; k < differences.size(); ++k) differences[k] -= model->remembered[k];
+  return model->ranks->sum(differences) != std::vector<std::int64_t>{0, 0, 0};
+}
+
+/// Other commands and fixes may have added, taken, moved or renamed grains, or put them into other groups.
+void FixSpot::take_changes() {
+  check_grains();
+  std::vector<spot::Grain> own;
+  model->drainage->visit_grains([&own](const spot::Grain &grain) { own.push_back(grain); });
+  std::vector<spot::Grain> now;
+  const spot::Quantum &quantum = model->drainage->quantum();
+  for (int i = 0; i < atom->nlocal; ++i) {
+    now.push_back(grain_of_lammps(i));
+    for (double &at : now.back().position) at = quantum.snap(at);
+  }
+  model->drainage->change_grains(find_changes(own, now, *model->ranks));
 }
 
 /// Index of a grain in LAMMPS' arrays, which no longer hold it if it was outside the simulation box.
@@ -443,12 +534,14 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
 void FixSpot::initial_integrate(int) {
   spot::Drainage &drainage = *model->drainage;
   try {
+    if (somebody_changed_grains()) take_changes();
     // The clock is a multiple of the window: how many of them make a step changes nothing.
     model->windows += model->windows_per_step;
-    drainage.advance_to(static_cast<double>(model->windows) * *model->command.window);
+    drainage.advance_to(static_cast<double>(model->windows) * model->window);
     drainage.require_inside();
     write_grains(drainage.take_drained(), true);
     if (peratom_flag) add_moves_received();
+    remember_grains();
   } catch (const spot::Error &e) {
     fail(e);
   }
@@ -456,9 +549,9 @@ void FixSpot::initial_integrate(int) {
   tell_all_who_leaves();
   if (!model->leaving.empty()) next_reneighbor = update->ntimestep;
 
-  auto &totals = model->drained_after_step;
-  totals.push_back(totals.back() + static_cast<std::int64_t>(model->leaving.size()));
-  if (totals.size() > static_cast<std::size_t>(model->command.average) + 1) totals.pop_front();
+  auto &drained = model->drained;
+  drained.push_back({model->windows, drained.back().grains + static_cast<std::int64_t>(model->leaving.size())});
+  if (drained.size() > static_cast<std::size_t>(model->command.average) + 1) drained.pop_front();
 }
 
 /// Another fix may hand grains to other ranks before LAMMPS asks for those that leave.
@@ -471,13 +564,18 @@ void FixSpot::tell_all_who_leaves() {
     for (const tagint grain : spot::ByteReader(bytes).take_all<tagint>()) model->leaving.push_back(grain);
 }
 
-/// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this.
+/// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this. Another fix
+/// may have taken some of them already.
 void FixSpot::pre_exchange() {
   if (model->leaving.empty()) return;
   model->local.assign(atom->tag, atom->nlocal);
+  std::int64_t found = 0;
   for (const tagint grain : model->leaving)
-    if (const int i = model->local[grain]; i >= 0) atom->x[i][2] = domain->boxlo[2] - model->diameter;
-  atom->natoms -= static_cast<bigint>(model->leaving.size());
+    if (const int i = model->local[grain]; i >= 0) {
+      atom->x[i][2] = domain->boxlo[2] - model->diameter;
+      ++found;
+    }
+  atom->natoms -= static_cast<bigint>(model->ranks->sum(found));
   model->leaving.clear();
 }
 
@@ -547,9 +645,10 @@ double FixSpot::largest_overlap() const {
 
 /// Grains a time, over the last `average` steps (fewer when no more were done).
 double FixSpot::mean_outflow() const {
-  const auto &totals = model->drained_after_step;
-  if (totals.size() < 2) return 0.0;
-  return static_cast<double>(totals.back() - totals.front()) / (static_cast<double>(totals.size() - 1) * update->dt);
+  const Model::Drained &first = model->drained.front(), &last = model->drained.back();
+  if (last.windows == first.windows) return 0.0;
+  return static_cast<double>(last.grains - first.grains) /
+         (static_cast<double>(last.windows - first.windows) * model->window);
 }
 
 /* ----------------------------------------------------------------------
@@ -561,11 +660,15 @@ void FixSpot::write_restart(FILE *file) {
   MPI_Allreduce(&model->drained_mass, &run.drained_mass, 1, MPI_DOUBLE, MPI_SUM, world);
   run.diameter = model->diameter;
   run.windows = model->windows;
-  run.drained_after_step.assign(model->drained_after_step.begin(), model->drained_after_step.end());
+  for (const Model::Drained &drained : model->drained) {
+    run.windows_after_step.push_back(drained.windows);
+    run.drained_after_step.push_back(drained.grains);
+  }
   try {
     if (!model->drainage)
       throw spot::InvalidState("there is nothing to write into a restart file before the first run");
     run.settings = model->command.settings();
+    run.window = model->command.window.value_or(0.0);
     write_run(run, model->drainage->save(), file, *model->ranks);
   } catch (const spot::Error &e) {
     fail(e);
@@ -581,8 +684,20 @@ void FixSpot::restart(char *bytes) {
   model->diameter = model->saved->diameter;
   model->windows = model->saved->windows;
   model->drained_mass = comm->me == 0 ? model->saved->drained_mass : 0.0;
-  const auto &totals = model->saved->drained_after_step;
-  model->drained_after_step.assign(totals.begin(), totals.end());
+  model->drained.clear();
+  for (std::size_t k = 0; k < model->saved->drained_after_step.size(); ++k)
+    model->drained.push_back({model->saved->windows_after_step[k], model->saved->drained_after_step[k]});
+}
+
+/// The clock goes on in the windows in which it has counted. None has been chosen if there was no step.
+void FixSpot::go_on_with_saved_window() {
+  const double saved = model->saved->window;
+  if (saved == 0.0) return;
+  const double now = model->command.window.value_or(saved);
+  if (now != saved)
+    throw spot::InvalidState(message("window was ", saved, " in the run that the restart file is of, but is ", now,
+                                     " now: leave it out; to start anew, give the fix another ID"));
+  model->command.window = saved;
 }
 
 /* ----------------------------------------------------------------------
@@ -656,7 +771,7 @@ int FixSpot::maxsize_restart() { return GRAIN_RECORD; }
 double FixSpot::memory_usage() {
   const Model &m = *model;
   std::size_t bytes = m.local.memory() + spot::bytes_in(m.leaving, m.spots, m.rows);
-  bytes += m.drained_after_step.size() * sizeof m.drained_after_step[0];
+  bytes += m.drained.size() * sizeof m.drained[0];
   if (m.drainage) bytes += m.drainage->memory();
   if (peratom_flag) bytes += atom->nmax * (GRAIN_COLUMNS * sizeof(double) + sizeof(double *));
   return static_cast<double>(bytes);

@@ -2,6 +2,7 @@
 #include "grain_delivery.h"
 
 #include <unordered_map>
+#include <unordered_set>
 
 #include "spot/errors.hpp"
 
@@ -9,6 +10,9 @@ using spot::ByteReader;
 using spot::Bytes;
 
 namespace {
+
+/// Where all that concerns a grain comes together.
+int meeting_rank(std::int64_t id, int ranks) { return static_cast<int>(id % ranks); }
 
 /// Messages for all ranks.
 template <typename Record, typename RankOf>
@@ -26,7 +30,7 @@ template <typename Parcel>
 std::vector<Parcel> deliver(const std::vector<Parcel> &parcels, const std::vector<std::int64_t> &held,
                             spot::Communicator &communicator) {
   const int ranks = communicator.size();
-  const auto meeting = [ranks](std::int64_t id) { return static_cast<int>(id % ranks); };
+  const auto meeting = [ranks](std::int64_t id) { return meeting_rank(id, ranks); };
   std::unordered_map<std::int64_t, int> holder;
   const auto claims = communicator.exchange(sort_by_rank(held, ranks, meeting));
   for (int rank = 0; rank < ranks; ++rank)
@@ -52,3 +56,57 @@ template std::vector<Delivery> deliver(const std::vector<Delivery> &, const std:
                                        spot::Communicator &);
 template std::vector<DeliveredMoves> deliver(const std::vector<DeliveredMoves> &, const std::vector<std::int64_t> &,
                                              spot::Communicator &);
+
+namespace {
+
+/// A grain, as messages carry it.
+struct Whereabouts {
+  std::int64_t id;
+  double position[3];
+  bool held;
+
+  explicit Whereabouts(const spot::Grain &grain)
+      : id(grain.id), position{grain.position[0], grain.position[1], grain.position[2]}, held(grain.held) {}
+  Whereabouts() = default;
+  spot::Grain grain() const { return {id, {position[0], position[1], position[2]}, held}; }
+};
+
+std::vector<Bytes> sort_by_meeting(const std::vector<spot::Grain> &grains, int ranks) {
+  std::vector<Whereabouts> all(grains.begin(), grains.end());
+  return sort_by_rank(all, ranks, [ranks](const Whereabouts &grain) { return meeting_rank(grain.id, ranks); });
+}
+
+}  // namespace
+
+spot::GrainChanges find_changes(const std::vector<spot::Grain> &packing, const std::vector<spot::Grain> &lammps,
+                                spot::Communicator &communicator) {
+  const int ranks = communicator.size();
+  struct Known {
+    spot::Grain grain;
+    int owner;
+  };
+  std::unordered_map<std::int64_t, Known> known;
+  const auto ours = communicator.exchange(sort_by_meeting(packing, ranks));
+  for (int rank = 0; rank < ranks; ++rank)
+    for (const auto &grain : ByteReader(ours[static_cast<std::size_t>(rank)]).take_all<Whereabouts>())
+      known.emplace(grain.id, Known{grain.grain(), rank});
+  spot::GrainChanges changes;
+  std::unordered_set<std::int64_t> seen;
+  for (const Bytes &bytes : communicator.exchange(sort_by_meeting(lammps, ranks)))
+    for (const auto &place : ByteReader(bytes).take_all<Whereabouts>()) {
+      if (!seen.insert(place.id).second)
+        throw spot::InvalidPacking(spot::message("grain ", place.id, " occurs twice"));
+      const auto found = known.find(place.id);
+      if (found != known.end() && found->second.grain == place.grain())
+        known.erase(found);
+      else
+        changes.come.push_back(place.grain());
+    }
+  std::vector<std::vector<std::int64_t>> gone(static_cast<std::size_t>(ranks));
+  for (const auto &[id, last] : known) gone[static_cast<std::size_t>(last.owner)].push_back(id);
+  std::vector<Bytes> outgoing(gone.size());
+  for (std::size_t rank = 0; rank < gone.size(); ++rank) spot::append(outgoing[rank], gone[rank]);
+  for (const Bytes &bytes : communicator.exchange(std::move(outgoing)))
+    for (const std::int64_t id : ByteReader(bytes).take_all<std::int64_t>()) changes.gone.push_back(id);
+  return changes;
+}

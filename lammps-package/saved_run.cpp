@@ -47,8 +47,10 @@ Bytes head_of(const SavedRun &run, const std::vector<std::int64_t> &sizes) {
     append_text(head, value);
   }
   spot::append(head, run.diameter);
+  spot::append(head, run.window);
   spot::append(head, run.windows);
   spot::append(head, run.drained_mass);
+  spot::append(head, run.windows_after_step);
   spot::append(head, run.drained_after_step);
   spot::append(head, sizes);
   spot::seal(head);
@@ -62,9 +64,13 @@ std::vector<std::int64_t> take_head(ByteReader reader, SavedRun &run) {
     run.settings.emplace_back(name, take_text(reader));
   }
   run.diameter = reader.take<double>();
+  run.window = reader.take<double>();
   run.windows = reader.take<std::int64_t>();
   run.drained_mass = reader.take<double>();
+  run.windows_after_step = reader.take_all<std::int64_t>();
   run.drained_after_step = reader.take_all<std::int64_t>();
+  if (run.windows_after_step.size() != run.drained_after_step.size() || run.drained_after_step.empty())
+    throw InvalidState("the restart file is damaged: the counts of drained grains do not fit together");
   return reader.take_all<std::int64_t>();
 }
 

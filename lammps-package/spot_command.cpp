@@ -317,7 +317,6 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"seed", precise(spots.seed)},
           {"outlet", precise(*outlet)},
           {"buffer", precise(*side_buffer, ' ', *base_buffer)},
-          {"window", *time_ordered ? "any" : precise(*window)},
           {"driver", *time_ordered ? "time-ordered" : "windowed"},
           {"relax tol", *time_ordered ? "none" : precise(relaxation.tolerance)},
           {"schedule of the relaxation", precise(static_cast<int>(relaxation.schedule), ' ', relaxation.every)},

@@ -63,8 +63,8 @@ struct SpotCommand {
   static double step_height_in_diameters(Accuracy accuracy);
   static spot::RelaxationParameters relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile);
 
-  /// All that decides where grains and spots go, as text, once it is resolved. `threads`, `average` and `peratom` are
-  /// not in it.
+  /// All that decides where grains and spots go, as text, once it is resolved, but for the window. `threads`, `average`
+  /// and `peratom` are not in it.
   std::vector<std::pair<std::string, std::string>> settings() const;
 
   bool uses_region() const { return std::holds_alternative<RegionWalls>(walls); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "spot/displacement.hpp"
 #include "spot/errors.hpp"
@@ -93,23 +94,44 @@ MovesReceived Drainage::take_moves_received() {
   return received;
 }
 
-/// Throws unless every grain is inside the walls or falling out of the orifice, above `lowest` and within `reach` of
-/// its axis.
-void Drainage::require_inside(double lowest, double reach) const {
+/// Throws unless the grain is inside the walls or falling out of the orifice, above `lowest` and within `reach` of its
+/// axis.
+void Drainage::require_inside(const Grain& grain, double lowest, double reach) const {
   const Orifice& orifice = container_->orifice();
-  visit_grains([&](const Grain& grain) {
-    const Vector3& centre = grain.position;
-    const bool falling =
-        centre.z() < orifice.centre.z() && centre.z() >= lowest && (centre - orifice.centre).head<2>().norm() <= reach;
-    if (!falling && !container_->contains(centre))
-      throw InvalidPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
-                                   ") is outside the container"));
-  });
+  const Vector3& centre = grain.position;
+  const bool falling =
+      centre.z() < orifice.centre.z() && centre.z() >= lowest && (centre - orifice.centre).head<2>().norm() <= reach;
+  if (!falling && !container_->contains(centre))
+    throw InvalidPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
+                                 ") is outside the container"));
 }
 
 void Drainage::require_inside() const {
   // Falling grains may spread below the plate, and those at the edge of a relaxed region leave one move later.
-  require_inside(-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
+  constexpr double any = std::numeric_limits<double>::infinity();
+  visit_grains([&](const Grain& grain) { require_inside(grain, -any, any); });
+}
+
+void Drainage::change_grains(const GrainChanges& changes) {
+  for (const Grain& grain : changes.come)
+    require_inside(grain, limits_.outlet, container_->orifice().radius + diameter_);
+  require_shallow(carry_out(changes), "when they are put in");
+}
+
+void Drainage::replace_grains(const std::vector<Grain>& grains) {
+  GrainChanges changes;
+  std::map<std::int64_t, Grain> old;
+  visit_grains([&](const Grain& grain) { old.emplace(grain.id, grain); });
+  for (Grain grain : grains) {
+    for (double& at : grain.position) at = quantum().snap(at);
+    const auto same = old.find(grain.id);
+    if (same != old.end() && same->second == grain)
+      old.erase(same);
+    else
+      changes.come.push_back(grain);
+  }
+  for (const auto& [id, grain] : old) changes.gone.push_back(id);
+  change_grains(changes);
 }
 
 void Drainage::require_no_collapse(const Overlap& largest) const {
@@ -129,12 +151,16 @@ void Drainage::require_left_through_orifice(std::size_t first) const {
   }
 }
 
-void Drainage::require_valid_start() {
-  require_inside(limits_.outlet, container_->orifice().radius + diameter_);
-  const Overlap overlap = largest_overlap();
+void Drainage::require_shallow(const Overlap& overlap, const char* when) const {
   if (overlap.depth > limits_.largest_overlap)
     throw InvalidPacking(message("grains ", overlap.first, " and ", overlap.second, " overlap by ", overlap.depth,
-                                 " diameters at the start; at most ", limits_.largest_overlap, " is allowed"));
+                                 " diameters ", when, "; at most ", limits_.largest_overlap, " is allowed"));
+}
+
+void Drainage::require_valid_start() {
+  visit_grains(
+      [&](const Grain& grain) { require_inside(grain, limits_.outlet, container_->orifice().radius + diameter_); });
+  require_shallow(largest_overlap(), "at the start");
 }
 
 }  // namespace spot

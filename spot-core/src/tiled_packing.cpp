@@ -204,6 +204,8 @@ void TiledPacking::occupy(std::uint32_t slot, std::int64_t id, const Point& poin
   references_[slot] = reference;
   momenta_[slot] = {0, 0, 0, 0};
   if (owned(slot / capacity_)) ++size_;
+  if (point.state != Point::free && point.state != Point::held)
+    falling_.push_back({slot / capacity_, slot % capacity_});
   note_change(slot);
 }
 

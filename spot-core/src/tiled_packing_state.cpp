@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What is needed to go on elsewhere: in another program, or on another rank.
 #include <algorithm>
+#include <limits>
 
 #include "spot/errors.hpp"
 #include "spot/tiled_packing.hpp"
+#include "wrapped_integers.hpp"
 
 namespace spot {
 
@@ -151,6 +153,58 @@ bool TiledPacking::balance(const Container& container) {
   set_slabs(balanced);
   fill(grains, cells, container);
   return true;
+}
+
+/// Collective. Adds whole cells at the low and the high ends of the grid. Cells keep their accounts, and grains the
+/// cells that their references are in, so that listing everything anew changes no list.
+void TiledPacking::grow(const std::array<int, 3>& below, const std::array<int, 3>& above, const Container& container) {
+  Bytes own;
+  save_layers(first_layer_ + border_[0], first_layer_ + border_[0] + rank_layers(), own);
+  std::vector<SavedGrain> grains;
+  std::vector<SavedCell> cells;
+  for (const Bytes& bytes :
+       communicator_->exchange(std::vector<Bytes>(static_cast<std::size_t>(communicator_->size()), own)))
+    for (ByteReader reader(bytes); !reader.at_end();) take_saved(reader, grains, cells);
+  const std::array<int, 3> old = n_;
+  const auto index = [this](const Cell& at) { return (static_cast<std::int64_t>(at.z) * n_[1] + at.y) * n_[0] + at.x; };
+  const auto shifted = [&](std::int64_t cell) {
+    const auto x = static_cast<int>(cell % old[0]), y = static_cast<int>(cell / old[0] % old[1]);
+    return Cell{x + below[0], y + below[1], static_cast<int>(cell / old[0] / old[1]) + below[2]};
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<double>(n_[axis]) + below[axis] + above[axis];
+    if (n > std::numeric_limits<std::int32_t>::max() / 2)
+      throw InvalidPacking(message("grains are spread over ", n, " cells of ", edge_[axis], " along ", "xyz"[axis],
+                                   ", which is too many"));
+    low_[static_cast<Eigen::Index>(axis)] -= below[axis] * edge_[axis];
+    n_[axis] += below[axis] + above[axis];
+  }
+  const Point shift = {wrap(below[0] * edge_quanta_[0]), wrap(below[1] * edge_quanta_[1]),
+                       wrap(below[2] * edge_quanta_[2]), 0};
+  std::vector<std::int64_t> in_layer(static_cast<std::size_t>(n_[2]), 0);
+  std::vector<SavedCell> entered;  // by grains that had been beyond the grid, this far from their references
+  for (SavedGrain& grain : grains) {
+    for (Point* point : {&grain.point, &grain.reference}) {
+      point->x = add(point->x, shift.x);
+      point->y = add(point->y, shift.y);
+      point->z = add(point->z, shift.z);
+    }
+    const Vector3 at = from_low(grain.reference, shifted(grain.cell));
+    const Cell cell{cell_coordinate(at.x(), 0), cell_coordinate(at.y(), 1), cell_coordinate(at.z(), 2)};
+    if (index(cell) != index(shifted(grain.cell)))
+      entered.push_back({index(cell), 0, length_of(minus(grain.point, grain.reference))});
+    grain.cell = index(cell);
+    ++in_layer[static_cast<std::size_t>(cell.z)];
+  }
+  for (SavedCell& cell : cells) cell.cell = index(shifted(cell.cell));
+  set_slabs(Slabs(in_layer, communicator_->size()));
+  fill(grains, cells, container);
+  for (const SavedCell& cell : entered) {
+    const std::int64_t here = cell.cell - static_cast<std::int64_t>(first_layer_) * cells_in_layer();
+    if (here < first_owned() || here >= last_owned()) continue;
+    std::int32_t& path = path_[static_cast<std::size_t>(here)];
+    path = std::max(path, cell.path);
+  }
 }
 
 std::vector<std::int64_t> TiledPacking::grains_in_layers() const {

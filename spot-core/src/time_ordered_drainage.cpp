@@ -2,6 +2,8 @@
 #include "spot/time_ordered_drainage.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "packed.hpp"
 #include "spot/displacement.hpp"
@@ -26,6 +28,8 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
       population_(spots, *container_, packing_.diameter()),
       relaxation_(relaxation) {
   require_valid_start();
+  TiledPacking tiled(packing_.diameter(), packing_.extent(), limits_.outlet, packing_.grains(), *container_);
+  let_settle(tiled, true);
 }
 
 TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
@@ -132,8 +136,34 @@ void TimeOrderedDrainage::take_out_drained() {
   if (relaxes_every_move()) require_left_through_orifice(before);
 }
 
-void TimeOrderedDrainage::replace_grains(const std::vector<Grain>& grains) {
-  replace_if_inside(packing_, Packing(packing_.diameter(), packing_.extent(), grains));
+Overlap TimeOrderedDrainage::carry_out(const GrainChanges& changes) {
+  TiledPacking tiled(packing_.diameter(), packing_.extent(), limits_.outlet, packing_.grains(), container());
+  tiled.change(changes.gone, changes.come, container());
+  const std::set<std::int64_t> gone(changes.gone.begin(), changes.gone.end());
+  std::vector<Grain> grains;
+  for (const Grain& grain : packing_.grains())
+    if (gone.count(grain.id) == 0) grains.push_back(grain);
+  grains.insert(grains.end(), changes.come.begin(), changes.come.end());
+  packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
+  if (tiled.largest_overlap_of_new().depth <= limits_.largest_overlap) let_settle(tiled, false);
+  return tiled.largest_overlap_of_new();
+}
+
+/// In the cells of the windowed driver, whose quantum is a multiple of the one here.
+void TimeOrderedDrainage::let_settle(TiledPacking& tiled, bool everybody) {
+  Workers alone(1);
+  std::map<std::int64_t, Vector3> before;
+  tiled.visit_grains([&](const Grain& grain) { before[grain.id] = grain.position; });
+  if (tiled.settle(everybody, parameters_.seed, relaxation_parameters_.contact_overlap, container(), alone) == 0)
+    return;
+  std::map<std::int64_t, Vector3> moved;
+  tiled.visit_grains([&](const Grain& grain) {
+    if (grain.position != before[grain.id]) moved[grain.id] = grain.position;
+  });
+  std::vector<Grain> grains = packing_.grains();
+  for (Grain& grain : grains)
+    if (const auto found = moved.find(grain.id); found != moved.end()) grain.position = found->second;
+  packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
 }
 
 void TimeOrderedDrainage::replace_container(std::shared_ptr<const Container> container) {

@@ -100,6 +100,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
   TiledPacking::require_radius(spots.radius, diameter);
   require_fitting_window();
   require_valid_start();
+  let_settle(true);
 }
 
 void WindowedDrainage::advance_to(double time) {
@@ -224,9 +225,15 @@ void WindowedDrainage::relax() {
     require_no_collapse(packing_.largest_overlap());
 }
 
-void WindowedDrainage::replace_grains(const std::vector<Grain>& grains) {
-  replace_if_inside(packing_, TiledPacking(packing_.diameter(), packing_.extent(), limits_.outlet, grains, container(),
-                                           communicator_));
+Overlap WindowedDrainage::carry_out(const GrainChanges& changes) {
+  packing_.change(changes.gone, changes.come, container());
+  const Overlap largest = packing_.largest_overlap_of_new();
+  if (communicator_->least(std::vector<double>{-largest.depth})[0] >= -limits_.largest_overlap) let_settle(false);
+  return largest;
+}
+
+void WindowedDrainage::let_settle(bool everybody) {
+  packing_.settle(everybody, parameters_.seed, relaxation_parameters_.contact_overlap, container(), *workers_);
 }
 
 void WindowedDrainage::replace_container(std::shared_ptr<const Container> container) {

@@ -16,6 +16,10 @@ inline std::int32_t wrap(std::int64_t quanta) { return static_cast<std::int32_t>
 inline std::int32_t add(std::int32_t a, std::int32_t b) { return wrap(static_cast<std::int64_t>(a) + b); }
 inline std::int32_t minus(std::int32_t a, std::int32_t b) { return wrap(static_cast<std::int64_t>(a) - b); }
 
+inline Point minus(const Point& a, const Point& b) {
+  return {minus(a.x, b.x), minus(a.y, b.y), minus(a.z, b.z), Point::free};
+}
+
 inline constexpr Point nobody = {0, 0, 0, Point::empty};
 
 inline double square(double value) { return value * value; }

@@ -34,6 +34,8 @@ SavedRun some_run() {
   run.diameter = 0.003;
   run.windows = std::int64_t{1} << 40;
   run.drained_mass = 1.25;
+  run.window = 0.05;
+  run.windows_after_step = {0, 2, 4};
   run.drained_after_step = {0, 3, 7};
   return run;
 }
@@ -83,6 +85,8 @@ TEST(SavedRun, ComesBackFromAnyNumberOfRanks) {
     EXPECT_EQ(back.diameter, run.diameter);
     EXPECT_EQ(back.windows, run.windows);
     EXPECT_EQ(back.drained_mass, run.drained_mass);
+    EXPECT_EQ(back.window, run.window);
+    EXPECT_EQ(back.windows_after_step, run.windows_after_step);
     EXPECT_EQ(back.drained_after_step, run.drained_after_step);
     ASSERT_EQ(back.parts.size(), static_cast<std::size_t>(ranks));
     for (int rank = 0; rank < ranks; ++rank) EXPECT_EQ(back.parts[static_cast<std::size_t>(rank)], part_of(rank));

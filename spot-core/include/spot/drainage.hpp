@@ -32,6 +32,12 @@ struct Counters {
   }
 };
 
+/// What somebody else has done to the grains. One that was moved, or is held now and was not, is among both.
+struct GrainChanges {
+  std::vector<std::int64_t> gone;  ///< ids; of grains of this rank
+  std::vector<Grain> come;         ///< each brought by one rank, whichever
+};
+
 /// How a drainage starts and ends.
 struct DrainageLimits {
   double outlet;                  ///< grains with centres below this height are taken out (length)
@@ -50,10 +56,14 @@ class Drainage {
   /// last whole window before it. Throws CollapsedPacking if relaxation does not keep up with the moves.
   virtual void advance_to(double time) = 0;
 
-  /// Goes on with other grains, as after somebody else moved, added or took some; the spots stay. Throws
-  /// InvalidPacking, and changes nothing, if a grain is outside. How deeply grains overlap is not asked: in flow that
-  /// is the relaxation's business.
-  virtual void replace_grains(const std::vector<Grain>& grains) = 0;
+  /// Goes on after somebody else moved, added or took grains; the spots stay. Grains that come, and those that stood on
+  /// some that are gone, are moved down until contacts hold them, at no time of the spots'. Throws InvalidPacking if a
+  /// grain that comes is outside, which changes nothing, or if it overlaps another more deeply than is allowed at the
+  /// start, after which the drainage is of no use.
+  void change_grains(const GrainChanges& changes);
+
+  /// The same, told what all grains are now. On one rank only.
+  void replace_grains(const std::vector<Grain>& grains);
 
   /// Goes on with other walls; grains that are outside them are found by require_inside().
   virtual void replace_container(std::shared_ptr<const Container> container) = 0;
@@ -106,18 +116,8 @@ class Drainage {
   /// Throws InvalidPacking, naming the grains, if one is outside the container or two overlap too deeply.
   void require_valid_start();
 
-  /// Puts `fresh` in the place of the driver's packing; throws InvalidPacking, and leaves everything as it was, if a
-  /// grain of it is outside.
-  template <typename AnyPacking>
-  void replace_if_inside(AnyPacking& packing, AnyPacking fresh) {
-    std::swap(packing, fresh);
-    try {
-      require_inside();
-    } catch (...) {
-      std::swap(packing, fresh);
-      throw;
-    }
-  }
+  /// Carries out what change_grains() has checked; returns the largest overlap of a grain that came, as it came.
+  virtual Overlap carry_out(const GrainChanges& changes) = 0;
 
   const Container& container() const { return *container_; }
   MovesReceived* received() { return received_ ? &*received_ : nullptr; }
@@ -141,7 +141,8 @@ class Drainage {
   std::optional<MovesReceived> received_;  // if they are counted
 
  private:
-  void require_inside(double lowest, double reach) const;
+  void require_inside(const Grain& grain, double lowest, double reach) const;
+  void require_shallow(const Overlap& largest, const char* when) const;
 };
 
 }  // namespace spot

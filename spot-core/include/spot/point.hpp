@@ -15,8 +15,11 @@ struct alignas(16) Point {
 
   /// States count as a fourth coordinate when distances to a move are measured, so that nothing that must stay is ever
   /// within reach of one.
-  /// A grain that is due is free, and moves in the sweep that is being made.
-  static constexpr std::int32_t free = 0, due = 1, held = 1 << 29, empty = 1 << 30;
+  /// A grain that is due is free, and moves in the sweep that is being made. Between moves there are grains that come
+  /// down until others bear them: they fall, which is to the sweeps as if they were due, they rest for the time being,
+  /// or they lie until all others do.
+  static constexpr std::int32_t free = 0, due = 1, falling = due, resting = 2, laid = 3, held = 1 << 29,
+                                empty = 1 << 30;
 };
 
 /// Shares of grains in moves are counted in so many parts, so that sums are exact.

@@ -107,6 +107,21 @@ class TiledPacking {
   /// Marks the grains near walls anew, as after the walls changed.
   void mark_near_walls(const Container& container);
 
+  /// Collective. Takes out the grains with these ids, which are this rank's, and brings in others, of which each rank
+  /// brings some; a grain that has moved is one that goes and one that comes. Those that come fall, as settle() finds
+  /// them. All others keep their momenta, and cells their accounts. Throws InvalidPacking, and is of no use any more,
+  /// if a grain is not there, is there already, or is beyond the extent.
+  void change(const std::vector<std::int64_t>& gone, const std::vector<Grain>& come, const Container& container);
+
+  /// The largest overlap of a grain of this rank that came in the last change() with any other, as it came.
+  const Overlap& largest_overlap_of_new() const { return largest_overlap_of_new_; }
+
+  /// Collective. Moves grains down that nothing holds: those that came, those above who went, or `everybody` that
+  /// hangs; in sweeps, until contacts hold them; others stay where they are. `in_contact`: overlap of grains that bear
+  /// on each other, in diameters. Returns how many grains of all ranks came down.
+  std::size_t settle(bool everybody, std::uint64_t seed, double in_contact, const Container& container,
+                     Workers& workers);
+
   /// Takes out this rank's grains with centres below the outlet and adds them to `drained`.
   void take_out_below(double outlet, std::vector<Grain>& drained);
 
@@ -179,6 +194,14 @@ class TiledPacking {
   struct SavedGrain;
   struct SavedCell;
 
+  /// One sweep of grains that come down.
+  struct Settling {
+    std::uint64_t seed;
+    int sweep;
+    double in_contact;
+    bool last;
+  };
+
   TiledPacking(double diameter, double extent, std::shared_ptr<Communicator> communicator);
 
   // Places. "From low": in deck units, from the lowest corner of the grid.
@@ -213,6 +236,7 @@ class TiledPacking {
   std::vector<Grain> take_own(const std::vector<Grain>& grains) const;
   Place ensure_room(std::uint32_t cell);
   std::uint32_t slot(const Place& place) const { return place.cell * capacity_ + place.in_cell; }
+  bool occupied(std::uint32_t slot) const { return points_[slot].state != Point::empty; }
   void occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference);
   void vacate(std::uint32_t slot);
   void set_capacity(std::uint32_t capacity);
@@ -252,6 +276,32 @@ class TiledPacking {
   void take_saved(ByteReader& reader, std::vector<SavedGrain>& grains, std::vector<SavedCell>& cells) const;
   void fill(const std::vector<SavedGrain>& grains, const std::vector<SavedCell>& cells, const Container& container);
   std::vector<std::int64_t> grains_in_layers() const;
+
+  // Others' changes.
+  void cover(const std::vector<Grain>& come, const Container& container);
+  void grow(const std::array<int, 3>& below, const std::array<int, 3>& above, const Container& container);
+  void take_out(const std::vector<std::int64_t>& gone, std::vector<Grain>& incoming);
+  void require_new_ids(const std::vector<Grain>& incoming) const;
+
+  // Grains that come down.
+  void find_hanging(const Container& container);
+  bool is_borne(std::uint32_t at, const Container& container) const;
+  bool stands_on_orifice(const Vector3& at, double reach, const Container& container) const;
+  bool stands_on_wall(const Vector3& at, const Container& container) const;
+  void start_falling(std::uint32_t at);
+  void note_neighbours_above(std::uint32_t at);
+  void note_above_falling_copies();
+  void update_falling(const Container& container, Workers& workers);
+  void keep_falling();
+  void sweep_falling(const Settling& settling, const Container& container);
+  std::int32_t next_state(std::uint32_t at, Point& step, const Settling& settling, const Container& container) const;
+  double push_off_bearers(std::uint32_t at, const Point& place, double in_contact, const Container& container,
+                          Point& push) const;
+  void part_from_bearers(std::uint32_t at, Point& step, double in_contact, const Container& container) const;
+  std::vector<Vector3> normals_of_contacts(std::uint32_t at, std::int32_t least, const Container& container) const;
+  void part_laid(double in_contact, const Container& container, Workers& workers);
+  double part_laid_once(double in_contact, const Container& container);
+  void move_falling(std::uint32_t at, const Point& by, std::int32_t state);
 
   // Moves.
   double reach_of_move(double radius) const;
@@ -312,6 +362,10 @@ class TiledPacking {
   std::vector<std::uint8_t> marks_;    // of slots, zero between uses
   std::vector<std::int32_t> account_;  // in parts of a move
   std::vector<std::int32_t> path_;     // of each cell: no grain in it is farther from its reference, in quanta
+
+  std::vector<Place> loosened_;  // of grains that may have lost what bore them
+  std::vector<Place> falling_;   // of grains that come down, and perhaps of others
+  Overlap largest_overlap_of_new_;
 
   std::vector<std::int64_t> work_;  // in each layer of this rank, in cells reached by moves, since balance()
 

@@ -9,6 +9,7 @@
 #include "spot/packing.hpp"
 #include "spot/relaxation.hpp"
 #include "spot/spot_population.hpp"
+#include "spot/tiled_packing.hpp"
 
 namespace spot {
 
@@ -27,7 +28,6 @@ class TimeOrderedDrainage : public Drainage {
 
   Bytes save() const override;
   void advance_to(double time) override;
-  void replace_grains(const std::vector<Grain>& grains) override;
   void replace_container(std::shared_ptr<const Container> container) override;
   void visit_grains(const std::function<void(const Grain&)>& visit) const override;
   const Quantum& quantum() const override { return packing_.quantum(); }
@@ -42,6 +42,8 @@ class TimeOrderedDrainage : public Drainage {
  private:
   TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
                       std::shared_ptr<const Container> container, double diameter, double extent, ByteReader saved);
+  Overlap carry_out(const GrainChanges& changes) override;
+  void let_settle(TiledPacking& packing, bool everybody);
   void carry_out(Move move);
   bool relaxes_around(const Move& move) const;
   /// As in 2006. The other schedules are there to see what comes of less, and may let the packing collapse.

@@ -24,7 +24,7 @@ namespace spot {
 ///
 /// Several ranks can share the grains and the spots: a spot belongs to the rank whose layers it is in. Once in a window
 /// its moves go to all ranks whose grains they may reach, the shares of these come back, and weights go out.
-/// Constructors, advance_to(), replace_grains() and total() are collective then.
+/// Constructors, advance_to(), change_grains() and total() are collective then.
 class WindowedDrainage : public Drainage {
  public:
   /// `window`: in the units of the rates. `grains`: of which each rank brings some. Throws as TimeOrderedDrainage does,
@@ -43,7 +43,6 @@ class WindowedDrainage : public Drainage {
 
   Bytes save() const override;
   void advance_to(double time) override;
-  void replace_grains(const std::vector<Grain>& grains) override;
   void replace_container(std::shared_ptr<const Container> container) override;
   void set_threads(int threads) override { workers_ = std::make_unique<Workers>(threads); }
   void visit_grains(const std::function<void(const Grain&)>& visit) const override { packing_.visit_grains(visit); }
@@ -73,6 +72,7 @@ class WindowedDrainage : public Drainage {
     int shares;  // of the grains that it encloses, as far as is known
   };
 
+  Overlap carry_out(const GrainChanges& changes) override;
   static double moves_until_due(const SpotParameters& spots, double tolerance, double diameter);
   static double positive_window(double window);
   /// Throws InvalidParameter if relaxation could not follow what spots do in a window.
@@ -89,6 +89,7 @@ class WindowedDrainage : public Drainage {
   void send_weights();
   Turn& turn_of(std::int64_t spot, std::int64_t number);
   void settle();
+  void let_settle(bool everybody);
   void relax();
   void drop_removed();
   std::vector<Bytes> read(const std::vector<Bytes>& saved);

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Grains that somebody else brings, takes or moves.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_set>
+
+#include "spot/errors.hpp"
+#include "spot/tiled_packing.hpp"
+#include "wrapped_integers.hpp"
+
+namespace spot {
+
+namespace {
+
+/// Whole cells from the lowest corner of a grid down to a place, or 0.
+int cells_before(double from_low, double per_edge) {
+  return from_low < 0.0 ? static_cast<int>(std::ceil(-from_low * per_edge)) : 0;
+}
+
+}  // namespace
+
+void TiledPacking::change(const std::vector<std::int64_t>& gone, const std::vector<Grain>& come,
+                          const Container& container) {
+  cover(come, container);
+  std::vector<Grain> incoming = take_own(come);
+  take_out(gone, incoming);
+  require_new_ids(incoming);
+  std::vector<Place> places;
+  for (const Grain& grain : incoming) {
+    const Vector3 at = grain.position - low_;
+    Point point = wrapped(at);
+    point.state = grain.held ? Point::held : Point::falling;
+    places.push_back(ensure_room(cell_at(at)));
+    occupy(slot(places.back()), grain.id, point, point);
+  }
+  for (const Place& place : places) list(slot(place), container);
+  choose_sent(no_cell);
+  exchange_border(container);
+  largest_overlap_of_new_ = Overlap();
+  double least = square(diameter_ / quantum_.length());
+  for (const Place& place : places) find_larger_overlap(slot(place), least, largest_overlap_of_new_);
+}
+
+/// Takes grains out of this rank's layers. One that stays where it is under another id, or as a held one or no longer
+/// as one, keeps what is remembered of it, and is taken off `incoming`.
+void TiledPacking::take_out(const std::vector<std::int64_t>& gone, std::vector<Grain>& incoming) {
+  const std::unordered_set<std::int64_t> ids(gone.begin(), gone.end());
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> slot_at;
+  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot)
+    if (occupied(slot) && ids.count(ids_[slot]) != 0) slot_at[quanta(position(slot) - low_)] = slot;
+  if (slot_at.size() != ids.size())
+    throw InvalidPacking(message(ids.size() - slot_at.size(), " of the ", ids.size(),
+                                 " grains that are to be taken out are not there, or not alone in their places"));
+  const auto stays = [&](const Grain& grain) {
+    const auto found = slot_at.find(quanta(grain.position - low_));
+    if (found == slot_at.end()) return false;
+    ids_[found->second] = grain.id;
+    points_[found->second].state = grain.held ? Point::held : Point::free;
+    note_change(found->second);
+    slot_at.erase(found);
+    return true;
+  };
+  incoming.erase(std::remove_if(incoming.begin(), incoming.end(), stays), incoming.end());
+  for (const auto& [at, slot] : slot_at) {
+    note_neighbours_above(slot);
+    unlist(slot);
+    vacate(slot);
+  }
+}
+
+void TiledPacking::require_new_ids(const std::vector<Grain>& incoming) const {
+  std::unordered_set<std::int64_t> ids;
+  for (const Grain& grain : incoming) {
+    if (grain.id < 0) throw InvalidPacking(message("grain id ", grain.id, " is negative"));
+    if (!ids.insert(grain.id).second) throw InvalidPacking(message("grain ", grain.id, " comes twice"));
+  }
+  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_ && !ids.empty(); ++slot)
+    if (occupied(slot) && ids.count(ids_[slot]) != 0)
+      throw InvalidPacking(message("grain ", ids_[slot], " is there already"));
+}
+
+/// Lets the grid grow by whole cells until it holds all these places. What is listed stays listed.
+void TiledPacking::cover(const std::vector<Grain>& come, const Container& container) {
+  std::vector<double> cells(6, 0.0);  // to be added below and above along each axis, with the other sign
+  for (const Grain& grain : come) {
+    if (!grain.position.allFinite() || grain.position.cwiseAbs().maxCoeff() > extent_)
+      throw InvalidPacking(message("grain ", grain.id, " at (", grain.position.x(), ", ", grain.position.y(), ", ",
+                                   grain.position.z(), ") is beyond the largest coordinate, ", extent_));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double from_low = grain.position[static_cast<Eigen::Index>(axis)] - low_[static_cast<Eigen::Index>(axis)];
+      const auto n = static_cast<int>(std::floor(from_low * per_edge_[axis])) + 1 - n_[axis];
+      cells[axis] = std::min(cells[axis], -1.0 * cells_before(from_low, per_edge_[axis]));
+      cells[axis + 3] = std::min(cells[axis + 3], -1.0 * n);
+    }
+  }
+  cells = communicator_->least(cells);
+  if (cells == std::vector<double>(6, 0.0)) return;
+  const auto added = [&](std::size_t k) { return static_cast<int>(-cells[k]); };
+  grow({added(0), added(1), added(2)}, {added(3), added(4), added(5)}, container);
+}
+
+}  // namespace spot

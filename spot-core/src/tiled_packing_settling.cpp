@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Grains that nothing holds come down until contacts do.
+#include <algorithm>
+#include <cmath>
+
+#include "kernels.hpp"
+#include "spot/random.hpp"
+#include "spot/support.hpp"
+#include "spot/tiled_packing.hpp"
+#include "wrapped_integers.hpp"
+
+namespace spot {
+
+namespace {
+
+// All in diameters.
+
+/// A grain of the packing hangs if it finds nobody lower than itself by the second, no farther away than the first.
+constexpr double reach_of_support = 1.5, least_drop = 0.25;
+
+/// Walls bear a grain from so far away, if their normal points upwards by so much.
+constexpr double wall_reach = 1.0, least_upwards = 0.1;
+
+/// A grain that touches nobody falls faster and faster, up to so far a sweep; how much less each grain falls is drawn
+/// once, so that a lattice comes apart on its way. One that touches others, rolls.
+constexpr double longest_fall = 0.25, slower = 0.7, roll = 0.04;
+
+/// In a sweep grains go aside by up to so much: while they fall, and as they roll off places from which they could roll
+/// either way.
+constexpr double drift = 0.05, jitter = 0.01;
+
+/// Gap at which two grains bear on each other, and overlap, beyond that in contact, with which one is left alone.
+constexpr double contact_gap = 0.01, overlap_at_rest = 0.002;
+
+/// Of an overlap, what a grain goes off one that bears it, or off a wall.
+constexpr double strength = 0.5;
+constexpr int most_pushes = 8;
+
+/// A grain that comes down by less than this share of a roll creeps. It has come to rest after so many sweeps of that,
+/// as grains do that lean on each other, or so many times as many of any that do not end in a free fall.
+constexpr double creeping = 0.1;
+constexpr int patience = 128, patience_with_rolls = 8;
+
+/// Sweeps after which even the last grain lies where it is; and to part those that lie.
+constexpr int most_sweeps = 20000, most_parting_sweeps = 2000;
+
+/// Of an overlap, what each of two grains that lie goes, and one against any other grain.
+constexpr float pair_share = 0.4f, fixed_share = 0.8f;
+
+}  // namespace
+
+std::size_t TiledPacking::settle(bool everybody, std::uint64_t seed, double in_contact, const Container& container,
+                                 Workers& workers) {
+  if (everybody) {
+    loosened_.clear();
+    for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot)
+      if (points_[slot].state == Point::free) loosened_.push_back({slot / capacity_, slot % capacity_});
+  }
+  find_hanging(container);
+  const std::int64_t settled = communicator_->sum(static_cast<std::int64_t>(falling_.size()));
+  if (settled == 0) return 0;
+  const auto comes_down = [this](const Place& place) { return points_[slot(place)].state != Point::laid; };
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    if (communicator_->sum(std::count_if(falling_.begin(), falling_.end(), comes_down)) == 0) break;
+    sweep_falling({seed, sweep, in_contact, sweep + 1 == most_sweeps}, container);
+    update_falling(container, workers);
+  }
+  part_laid(in_contact, container, workers);
+  return static_cast<std::size_t>(settled);
+}
+
+void TiledPacking::update_falling(const Container& container, Workers& workers) {
+  choose_sent(no_cell);
+  update_lists(container, workers);
+  keep_falling();
+}
+
+// ---- who hangs
+
+/// Marks those of `loosened_` that nobody bears as falling, and then those that only they have borne.
+void TiledPacking::find_hanging(const Container& container) {
+  std::int64_t found = 0;
+  do {
+    found = 0;
+    while (!loosened_.empty()) {
+      const std::uint32_t at = slot(loosened_.back());
+      loosened_.pop_back();
+      if (points_[at].state != Point::free || !owned(at / capacity_) || is_borne(at, container)) continue;
+      start_falling(at);
+      note_neighbours_above(at);
+      ++found;
+    }
+    found = communicator_->sum(found);
+    if (found == 0) break;
+    choose_sent(no_cell);
+    exchange_border(container);
+    note_above_falling_copies();
+  } while (found > 0);
+}
+
+bool TiledPacking::is_borne(std::uint32_t at, const Container& container) const {
+  const double per_diameter = quantum_.length() / diameter_;
+  const std::uint32_t* list = lists_.data() + static_cast<std::size_t>(at) * list_capacity_;
+  for (std::uint32_t k = 0; k < list_size_[at]; ++k) {
+    const Point& other = points_[list[k]];
+    if (other.state == Point::falling) continue;
+    if (minus(points_[at].z, other.z) * per_diameter < least_drop) continue;
+    if (squared_distance(points_[at], other) * square(per_diameter) <= square(reach_of_support)) return true;
+  }
+  return stands_on_orifice(position(at), wall_reach, container) || stands_on_wall(position(at), container);
+}
+
+/// The packing over the orifice is borne by what flows out of it, which is the spots' business.
+bool TiledPacking::stands_on_orifice(const Vector3& at, double reach, const Container& container) const {
+  const Orifice& orifice = container.orifice();
+  const double height = at.z() - orifice.centre.z();
+  return height < 0.0 || (height <= reach * diameter_ && (at - orifice.centre).head<2>().norm() <= orifice.radius);
+}
+
+bool TiledPacking::stands_on_wall(const Vector3& at, const Container& container) const {
+  WallContacts contacts;
+  container.contacts(at, wall_reach * diameter_, contacts);
+  return std::any_of(contacts.begin(), contacts.end(),
+                     [](const WallContact& contact) { return contact.normal.z() >= least_upwards; });
+}
+
+void TiledPacking::start_falling(std::uint32_t at) {
+  points_[at].state = Point::falling;
+  momenta_[at] = {0, 0, 0, 0};
+  note_change(at);
+  falling_.push_back({at / capacity_, at % capacity_});
+}
+
+void TiledPacking::note_neighbours_above(std::uint32_t at) {
+  const std::uint32_t* list = lists_.data() + static_cast<std::size_t>(at) * list_capacity_;
+  for (std::uint32_t k = 0; k < list_size_[at]; ++k)
+    if (points_[list[k]].state == Point::free && minus(points_[list[k]].z, points_[at].z) > 0)
+      loosened_.push_back({list[k] / capacity_, list[k] % capacity_});
+}
+
+/// What falls on the ranks below and above may have borne grains here.
+void TiledPacking::note_above_falling_copies() {
+  const auto note = [this](std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t slot = first * capacity_; slot < last * capacity_; ++slot)
+      if (points_[slot].state == Point::falling) note_neighbours_above(slot);
+  };
+  note(0, first_owned());
+  note(last_owned(), cells());
+}
+
+// ---- how they come down
+
+/// Lists may have given grains other slots, or other ranks the grains: whoever occupies a slot with a falling grain
+/// notes it, so that some are noted twice and others are gone.
+void TiledPacking::keep_falling() {
+  const auto gone = [this](const Place& place) {
+    const std::int32_t state = points_[slot(place)].state;
+    return !owned(place.cell) || !(state == Point::falling || state == Point::resting || state == Point::laid);
+  };
+  falling_.erase(std::remove_if(falling_.begin(), falling_.end(), gone), falling_.end());
+  const auto number = [this](const Place& place) { return slot(place); };
+  std::sort(falling_.begin(), falling_.end(), [&](const Place& a, const Place& b) { return number(a) < number(b); });
+  falling_.erase(std::unique(falling_.begin(), falling_.end(),
+                             [&](const Place& a, const Place& b) { return number(a) == number(b); }),
+                 falling_.end());
+}
+
+/// All grains decide by where all were before, and how they were.
+void TiledPacking::sweep_falling(const Settling& settling, const Container& container) {
+  struct Step {
+    Point by;
+    std::int32_t state;
+  };
+  std::vector<Step> steps;
+  for (const Place& place : falling_) {
+    Step step{};
+    step.state = points_[slot(place)].state;
+    if (step.state != Point::laid) {
+      step.state = next_state(slot(place), step.by, settling, container);
+      part_from_bearers(slot(place), step.by, settling.in_contact, container);
+    }
+    steps.push_back(step);
+  }
+  for (std::size_t k = 0; k < falling_.size(); ++k) move_falling(slot(falling_[k]), steps[k].by, steps[k].state);
+}
+
+/// A grain is pushed off those that are not themselves coming down from above it: nobody has to bear what still falls,
+/// or grains at the bottom of a heap would be pressed into each other. Returns the deepest of the overlaps, in
+/// diameters, less that in contact.
+double TiledPacking::push_off_bearers(std::uint32_t at, const Point& place, double in_contact,
+                                      const Container& container, Point& push) const {
+  const double parted = (1.0 - in_contact) * diameter_ / quantum_.length();
+  double least = square(parted);
+  const std::uint32_t* list = lists_.data() + static_cast<std::size_t>(at) * list_capacity_;
+  for (std::uint32_t k = 0; k < list_size_[at]; ++k) {
+    const Point& other = points_[list[k]];
+    const double squared = squared_distance(place, other);
+    if (squared >= square(parted)) continue;
+    const Point by = minus(place, other);
+    const bool comes_down = other.state == Point::falling || other.state == Point::resting;
+    if (comes_down && (by.z < 0 || (by.z == 0 && ids_[at] < ids_[list[k]]))) continue;
+    least = std::min(least, squared);
+    // Centres that coincide have no line between them.
+    const double scale = squared > 0.0 ? strength * (parted / std::sqrt(squared) - 1.0) : 0.0;
+    push.x = add(push.x, wrap(std::llrint(scale * by.x)));
+    push.y = add(push.y, wrap(std::llrint(scale * by.y)));
+    push.z = add(push.z, squared > 0.0 ? wrap(std::llrint(scale * by.z)) : wrap(std::llrint(strength * parted)));
+  }
+  double depth = 1.0 - std::sqrt(least) / parted;
+  WallContacts walls;
+  if (near_wall_[at] != 0) container.contacts(low_ + from_low(place, at / capacity_), 0.5 * diameter_, walls);
+  for (const WallContact& wall : walls) {
+    const double overlap = 0.5 * diameter_ - wall.distance;
+    this->push(push, strength * overlap * wall.normal);
+    depth = std::max(depth, overlap / diameter_);
+  }
+  return depth;
+}
+
+/// Pushes a grain that is about to step off those that bear it, until it overlaps them no more.
+void TiledPacking::part_from_bearers(std::uint32_t at, Point& step, double in_contact,
+                                     const Container& container) const {
+  for (int round = 0; round < most_pushes; ++round) {
+    const Point& from = points_[at];
+    const Point place = {add(from.x, step.x), add(from.y, step.y), add(from.z, step.z), from.state};
+    if (push_off_bearers(at, place, in_contact, container, step) <= 0.5 * overlap_at_rest) return;
+  }
+}
+
+/// What becomes of a falling grain; adds to its push what it falls or rolls by.
+std::int32_t TiledPacking::next_state(std::uint32_t at, Point& step, const Settling& settling,
+                                      const Container& container) const {
+  if (settling.last) return Point::laid;
+  Point unused{};
+  const double depth = push_off_bearers(at, points_[at], settling.in_contact, container, unused);
+  const auto id = static_cast<std::uint64_t>(ids_[at]), sweep = static_cast<std::uint64_t>(settling.sweep);
+  const auto numbers = uniform(settling.seed, RandomPurpose::settling, id, sweep);
+  const int time_waited = momenta_[at].state / patience_with_rolls;
+  const bool waited = time_waited >= patience;
+  const std::vector<Vector3> normals = normals_of_contacts(at, Point::resting, container);
+  if (waited || stands_on_orifice(position(at), 0.5, container) || holds(normals)) {
+    // On others that rest, only once these lie still, or all lean on each other.
+    const bool still = waited || holds(normals_of_contacts(at, Point::laid, container));
+    const bool caught = time_waited >= 2 * patience;  // where there is no room for it
+    return caught || (still && depth <= overlap_at_rest) ? Point::laid : Point::resting;
+  }
+  const bool touches = !normals.empty();
+  const double last = -momenta_[at].z * quantum_.length();
+  const double fastest = (1.0 - slower * uniform(settling.seed, RandomPurpose::fall, id, 0)[0]) * longest_fall;
+  const double down = touches ? roll * diameter_ : std::clamp(2.0 * last, roll * diameter_, fastest * diameter_);
+  const double aside = (touches ? jitter : drift) * diameter_;
+  push(step, {aside * (2.0 * numbers[0] - 1.0), aside * (2.0 * numbers[1] - 1.0), -down});
+  return Point::falling;
+}
+
+/// From everything that a grain touches to the grain; of grains that come down, those that are `least` at rest.
+std::vector<Vector3> TiledPacking::normals_of_contacts(std::uint32_t at, std::int32_t least,
+                                                       const Container& container) const {
+  struct Contact {
+    std::int64_t id;
+    Vector3 normal;
+  };
+  std::vector<Contact> contacts;
+  const double reach = (1.0 + contact_gap) * diameter_ / quantum_.length();
+  const std::uint32_t* list = lists_.data() + static_cast<std::size_t>(at) * list_capacity_;
+  for (std::uint32_t k = 0; k < list_size_[at]; ++k) {
+    const Point& other = points_[list[k]];
+    const bool bears = other.state != Point::falling && (other.state != Point::resting || least == Point::resting);
+    if (!bears || squared_distance(points_[at], other) > square(reach)) continue;
+    const Point by = minus(points_[at], other);
+    const Vector3 normal = Vector3(by.x, by.y, by.z);
+    if (normal.squaredNorm() > 0.0) contacts.push_back({ids_[list[k]], normal.normalized()});
+  }
+  // Rounding goes with the order.
+  std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) { return a.id < b.id; });
+  std::vector<Vector3> normals;
+  for (const Contact& contact : contacts) normals.push_back(contact.normal);
+  WallContacts walls;
+  if (near_wall_[at] != 0) container.contacts(position(at), (0.5 + contact_gap) * diameter_, walls);
+  for (const WallContact& wall : walls) normals.push_back(wall.normal);
+  return normals;
+}
+
+void TiledPacking::move_falling(std::uint32_t at, const Point& by, std::int32_t state) {
+  Point& point = points_[at];
+  point = {add(point.x, by.x), add(point.y, by.y), add(point.z, by.z), state};
+  Point& last = momenta_[at];
+  const double down = -by.z * quantum_.length() / diameter_;
+  const bool creeps = std::abs(down)<creeping * roll, falls = down> 2.0 * roll;
+  last = {by.x, by.y, by.z, falls ? 0 : last.state + (creeps ? patience_with_rolls : 1)};
+  if (state == Point::laid) last = {0, 0, 0, 0};
+  std::int32_t& path = path_[at / capacity_];
+  path = static_cast<std::int32_t>(std::min<std::int64_t>(static_cast<std::int64_t>(path) + length_of(by), 1 << 30));
+  note_change(at);
+}
+
+/// Grains that came to lie against each other, or were caught, are parted in sweeps as all grains are, with those that
+/// were there before held.
+void TiledPacking::part_laid(double in_contact, const Container& container, Workers& workers) {
+  const auto set_state = [this](std::int32_t state) {
+    for (const Place& place : falling_) {
+      points_[slot(place)].state = state;
+      momenta_[slot(place)] = {0, 0, 0, 0};
+      note_change(slot(place));
+    }
+  };
+  set_state(Point::due);
+  for (int sweep = 0; sweep < most_parting_sweeps; ++sweep) {
+    choose_sent(no_cell);
+    exchange_border(container);
+    const double deepest = part_laid_once(in_contact, container);
+    if (communicator_->least(std::vector<double>{-deepest})[0] >= -overlap_at_rest) break;
+    update_falling(container, workers);
+  }
+  set_state(Point::free);
+  falling_.clear();
+  update_falling(container, workers);
+}
+
+/// Returns the deepest overlap that this rank's grains had, in diameters, less that in contact.
+double TiledPacking::part_laid_once(double in_contact, const Container& container) {
+  Task task;
+  for (const Place& place : falling_) task.active.push_back(slot(place));
+  task.grains = static_cast<std::uint32_t>(falling_.size());
+  for (std::uint32_t k = 0; k < task.grains; ++k)
+    if (near_wall_[task.active[k]] != 0) task.walled.push_back(k);
+  task.active.resize(task.active.size() + kernels::ahead, 0u);
+  task.pushes.resize(task.grains);
+  const double parted = (1.0 - in_contact) * diameter_ / quantum_.length();
+  kernels_->push_off_neighbours(
+      points_.data(), task.active.data(), task.grains, {lists_.data(), list_size_.data(), list_capacity_},
+      {static_cast<float>(1.0 / square(parted)), pair_share, fixed_share}, task.pushes.data());
+  part_coincident(task, pair_share * diameter_);
+  push_off_planes(task, fixed_share);
+  push_off_other_walls(task, fixed_share, container);
+  double deepest = 0.0;
+  for (std::uint32_t k = 0; k < task.grains; ++k) {
+    deepest = std::max(deepest, 0.5 * static_cast<double>(depth_of(task.pushes[k])));
+    move_falling(task.active[k], task.pushes[k], Point::due);
+  }
+  return deepest;
+}
+
+}  // namespace spot
