@@ -5,6 +5,8 @@
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace spot {
@@ -48,9 +50,8 @@ constexpr Wide product_of(double a, double b) {
 }
 
 constexpr Wide operator+(const Wide& a, const Wide& b) {
-  const Wide high = sum_of(a.high, b.high), low = sum_of(a.low, b.low);
-  const Wide sum = sum_of_ordered(high.high, high.low + low.high);
-  return sum_of_ordered(sum.high, sum.low + low.low);
+  const Wide sum = sum_of(a.high, b.high);
+  return sum_of_ordered(sum.high, sum.low + (a.low + b.low));
 }
 
 constexpr Wide operator-(const Wide& a) { return {-a.high, -a.low}; }
@@ -61,13 +62,11 @@ constexpr Wide operator*(const Wide& a, const Wide& b) {
   return sum_of_ordered(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 
-/// Long division, three digits of it.
+/// Long division, two digits of it.
 constexpr Wide operator/(const Wide& a, const Wide& b) {
   const double first = a.high / b.high;
-  const Wide after_first = a - b * Wide{first, 0.0};
-  const double second = after_first.high / b.high;
-  const double third = (after_first - b * Wide{second, 0.0}).high / b.high;
-  return sum_of_ordered(first, second) + Wide{third, 0.0};
+  const Wide rest = a - b * Wide{first, 0.0};
+  return sum_of_ordered(first, (rest.high + rest.low) / b.high);
 }
 
 constexpr Wide wide(double a) { return {a, 0.0}; }
@@ -76,7 +75,7 @@ constexpr Wide ln_2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 constexpr Wide two_pi = {0x1.921fb54442d18p+2, 0x1.1a62633145c07p-52};
 
 /// 1/n!
-constexpr std::size_t factorials = 30;
+constexpr std::size_t factorials = 20;
 constexpr std::array<Wide, factorials> inverse_factorials = [] {
   std::array<Wide, factorials> all{wide(1.0)};
   for (std::size_t n = 1; n < factorials; ++n) all[n] = all[n - 1] / wide(static_cast<double>(n));
@@ -84,33 +83,62 @@ constexpr std::array<Wide, factorials> inverse_factorials = [] {
 }();
 
 /// 1/(2 n + 1)
-constexpr std::size_t odds = 22;
+constexpr std::size_t odds = 14;
 constexpr std::array<Wide, odds> inverse_odds = [] {
   std::array<Wide, odds> all{};
   for (std::size_t n = 0; n < odds; ++n) all[n] = wide(1.0) / wide(static_cast<double>(2 * n + 1));
   return all;
 }();
 
-/// The sum of coefficients[first + k * step] x^k, as many as there are.
+/// The sum of coefficients[first + k * step] x^k for k < terms. From `few` on terms are below 2^-18 of the first, and
+/// those bits of a double are enough.
 template <std::size_t n>
-Wide series(const std::array<Wide, n>& coefficients, std::size_t first, std::size_t step, const Wide& x) {
-  std::size_t k = first + (n - 1 - first) / step * step;
-  Wide sum = coefficients[k];
-  while (k > first) {
-    k -= step;
-    sum = sum * x + coefficients[k];
-  }
+Wide series(const std::array<Wide, n>& coefficients, std::size_t first, std::size_t step, std::size_t few,
+            std::size_t terms, const Wide& x) {
+  std::size_t k = terms - 1;
+  double rest = coefficients[first + k * step].high;
+  while (k > few) rest = rest * x.high + coefficients[first + --k * step].high;
+  Wide sum = wide(rest);
+  while (k > 0) sum = sum * x + coefficients[first + --k * step];
   return sum;
 }
 
-/// Of a finite x above 0: k log 2 + 2 artanh((m - 1) / (m + 1)), where x = 2^k m and m is near 1.
+// A double is a sign, 11 bits of exponent, and 52 of what follows its first binary place.
+constexpr int places = 52, bias = 1023;
+
+std::uint64_t bits_of(double x) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+
+double of_bits(std::uint64_t bits) {
+  double x;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+/// x 2^k, for k no larger than twice what a double has; rounded once, if at all.
+double scaled(double x, int k) {
+  const auto power = [](int n) { return of_bits(static_cast<std::uint64_t>(n + bias) << places); };
+  return x * power(k / 2) * power(k - k / 2);
+}
+
+/// Of a finite x above 0: k log 2 + 2 artanh((m - 1) / (m + 1)), where x = 2^k m and m is from 0.71 to 1.41.
 Wide log_of(const Wide& x) {
-  int k = 0;
-  const double half_sqrt_2 = 0.70710678118654752;
-  if (std::frexp(x.high, &k) < half_sqrt_2) --k;
-  const Wide m = {std::ldexp(x.high, -k), std::ldexp(x.low, -k)};
+  constexpr double least_normal = 0x1p-1022, sqrt_2 = 1.4142135623730951;
+  const int more = x.high < least_normal ? places : 0;
+  const std::uint64_t bits = bits_of(x.high * (more > 0 ? 0x1p52 : 1.0));
+  constexpr std::uint64_t fraction = (std::uint64_t{1} << places) - 1;
+  double high = of_bits((bits & fraction) | static_cast<std::uint64_t>(bias) << places);
+  int k = static_cast<int>(bits >> places) - bias - more;
+  if (high > sqrt_2) {
+    high *= 0.5;
+    ++k;
+  }
+  const Wide m = {high, scaled(x.low, -k)};
   const Wide s = (m - wide(1.0)) / (m + wide(1.0));
-  return ln_2 * wide(k) + wide(2.0) * s * series(inverse_odds, 0, 1, s * s);
+  return ln_2 * wide(k) + wide(2.0) * s * series(inverse_odds, 0, 1, 3, odds, s * s);
 }
 
 /// 2^k e^r, where r is near 0.
@@ -118,8 +146,8 @@ double exp_of(const Wide& x) {
   constexpr double beyond = 800.0;  // all range of a double
   if (x.high > beyond) return infinity;
   if (x.high < -beyond) return 0.0;
-  const double k = std::nearbyint(x.high / ln_2.high);
-  return std::ldexp(series(inverse_factorials, 0, 1, x - ln_2 * wide(k)).high, static_cast<int>(k));
+  const double k = std::floor(x.high / ln_2.high + 0.5);
+  return scaled(series(inverse_factorials, 0, 1, 6, 18, x - ln_2 * wide(k)).high, static_cast<int>(k));
 }
 
 /// Cosine, or sine, of so many turns, which are found in a quarter turn that begins at an eighth.
@@ -134,8 +162,8 @@ double of_turns(double turns, bool sine) {
   if (odd && rest == 0.0) return 0.0;
   const Wide angle = two_pi * wide(rest), minus_square = -(angle * angle);
   // The series of the sine has 1/n! for odd n, with alternating signs.
-  const Wide value =
-      odd ? angle * series(inverse_factorials, 1, 2, minus_square) : series(inverse_factorials, 0, 2, minus_square);
+  const Wide value = odd ? angle * series(inverse_factorials, 1, 2, 4, 10, minus_square)
+                         : series(inverse_factorials, 0, 2, 4, 10, minus_square);
   return number == 1.0 || number == 2.0 || number == 5.0 || number == 6.0 ? -value.high : value.high;
 }
 
