@@ -12,12 +12,12 @@
 /// What the fix puts into a restart file of LAMMPS.
 struct SavedRun {
   std::vector<std::pair<std::string, std::string>> settings;  // what must be the same when the run goes on
-  double diameter = 0.0;  // of the grains, of which none may be left
-  double window = 0.0;    // 0: not chosen yet
+  double diameter = 0.0;                                      // of the grains, of which none may be left
+  double window = 0.0;                                        // 0: not chosen yet
   std::int64_t windows = 0;
   double drained_mass = 0.0;
   std::vector<std::int64_t> windows_after_step, drained_after_step;  // of which the outflow is a mean
-  std::vector<spot::Bytes> parts;  // what spot::Drainage::save() gave on every rank
+  std::vector<spot::Bytes> parts;                                    // what spot::Drainage::save() gave on every rank
 };
 
 /// Collective. Writes a run, of whose parts every rank has one; `file` is open on rank 0. The parts of other ranks come

@@ -4,10 +4,10 @@
 namespace spot {
 
 /// Elementary functions whose bits are the same wherever double is IEEE's: C libraries differ in the last one, from
-/// version to version and from processor to processor. Made of +, -, *, / alone, with twice the digits of a double where
-/// they count, and rounded once: within 0.501 units in the last place (pow: 0.51; results below 2^-1022: one). A call
-/// takes 0.1 us. All that enters a walk or a decision of spot-core goes through these; sqrt, floor and rounding are
-/// exact everywhere.
+/// version to version and from processor to processor. Made of +, -, *, / alone, with twice the digits of a double
+/// where they count, and rounded once: within 0.501 units in the last place (pow: 0.51; results below 2^-1022: one). A
+/// call takes 0.1 us. All that enters a walk or a decision of spot-core goes through these; sqrt, floor and rounding
+/// are exact everywhere.
 
 /// Infinity above 709.78, 0 below -745.13.
 double exp(double x);
