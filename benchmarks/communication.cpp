@@ -90,9 +90,9 @@ class Counting : public spot::Communicator {
     called(reductions).bytes += static_cast<std::int64_t>(8 * values.size());
     return timed([&] { return other_->least(std::move(values)); });
   }
-  std::int64_t least(std::int64_t value) override {
-    called(reductions).bytes += 8;
-    return timed([&] { return other_->least(value); });
+  Pair first(Pair pair) override {
+    called(reductions).bytes += sizeof pair;
+    return timed([&] { return other_->first(pair); });
   }
 
  private:

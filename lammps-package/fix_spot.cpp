@@ -42,6 +42,16 @@ enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
 /// Columns of the output per atom, after the displacement along x, y and z.
 enum GrainColumn { MOVES = 3, GRAIN_COLUMNS };
 
+/// What a grain has in a restart file: the number of these, its columns, and a checksum.
+constexpr int GRAIN_RECORD = 1 + GRAIN_COLUMNS + 1;
+
+/// Of a grain's columns and whose they are; a whole number that a double holds.
+double checksum_of(tagint grain, const double *columns) {
+  double all[1 + GRAIN_COLUMNS] = {static_cast<double>(grain)};
+  std::copy_n(columns, +GRAIN_COLUMNS, all + 1);
+  return static_cast<double>(spot::checksum(reinterpret_cast<const char *>(all), sizeof all) >> 12);
+}
+
 std::uint64_t bits_of(double value) {
   std::uint64_t bits;
   std::memcpy(&bits, &value, sizeof bits);
@@ -125,8 +135,13 @@ struct FixSpot::Model {
   double overlap_after_run = 0.0;
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
+<<<<<<< HEAD
   bigint windows = 0;   // done since the fix was made; the clock of the spots
   double window = 0.0;  // in time units; until the first step only what it would be
+=======
+  std::int64_t windows = 0;  // done since the fix was made; the clock of the spots
+  double window = 0.0;       // in time units; until the first step only what it would be
+>>>>>>> library15
   int windows_per_step = 1;
   std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
   bool named_unused_forces = false;
@@ -160,6 +175,8 @@ FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg)
 
   if (!atom->radius_flag || !atom->rmass_flag)
     error->all(FLERR, std::string("fix spot needs grains with a radius: use atom_style sphere"));
+  if (!atom->tag_enable)
+    error->all(FLERR, std::string("fix spot needs grains with IDs: leave out 'atom_modify id no'"));
   if (lmp->kokkos) error->all(FLERR, std::string("fix spot does not work with the KOKKOS package"));
   if (domain->dimension != 3) error->all(FLERR, std::string("fix spot needs a simulation in 3 dimensions"));
   try {
@@ -274,7 +291,7 @@ void FixSpot::name_unused_forces() {
 void FixSpot::check_grains() {
   if (atom->natoms == 0) {
     // A silo that ran empty is no error, but without a single grain there is no diameter to start from.
-    if (!model->drainage) error->all(FLERR, std::string("fix spot: there are no grains"));
+    if (!(model->diameter > 0.0)) error->all(FLERR, std::string("fix spot: there are no grains"));
     return;
   }
   // One rank may hold none. NaN is no number that is least, so a diameter that is none is found below.
@@ -647,6 +664,7 @@ double FixSpot::mean_outflow() const {
 void FixSpot::write_restart(FILE *file) {
   SavedRun run;
   MPI_Allreduce(&model->drained_mass, &run.drained_mass, 1, MPI_DOUBLE, MPI_SUM, world);
+  run.diameter = model->diameter;
   run.windows = model->windows;
   for (const Model::Drained &drained : model->drained) {
     run.windows_after_step.push_back(drained.windows);
@@ -669,6 +687,7 @@ void FixSpot::restart(char *bytes) {
   } catch (const spot::Error &e) {
     fail(e);
   }
+  model->diameter = model->saved->diameter;
   model->windows = model->saved->windows;
   model->drained_mass = comm->me == 0 ? model->saved->drained_mass : 0.0;
   model->drained.clear();
@@ -731,20 +750,29 @@ int FixSpot::unpack_exchange(int i, double *buffer) {
 
 /// In a restart file the values of each fix come after their number, which counts itself.
 int FixSpot::pack_restart(int i, double *buffer) {
-  buffer[0] = GRAIN_COLUMNS + 1;
-  return 1 + pack_exchange(i, buffer + 1);
+  buffer[0] = GRAIN_RECORD;
+  pack_exchange(i, buffer + 1);
+  buffer[GRAIN_RECORD - 1] = checksum_of(atom->tag[i], array_atom[i]);
+  return GRAIN_RECORD;
 }
 
 void FixSpot::unpack_restart(int i, int nth) {
   if (!peratom_flag) return;
-  double *values = atom->extra[i];
-  for (; nth > 0; --nth) values += static_cast<int>(*values);
-  unpack_exchange(i, values + 1);
+  // The records of other fixes come before; lengths that are damaged lead anywhere.
+  double *values = atom->extra[i], at = 0.0;
+  const double last = atom->nextra_store - GRAIN_RECORD;
+  for (; nth > 0 && at >= 0.0 && at <= last; --nth) at += std::trunc(values[static_cast<int>(at)]);
+  if (at >= 0.0 && at <= last) {
+    values += static_cast<int>(at);
+    unpack_exchange(i, values + 1);
+    if (values[0] == GRAIN_RECORD && values[GRAIN_RECORD - 1] == checksum_of(atom->tag[i], array_atom[i])) return;
+  }
+  error->one(FLERR, message("fix spot: the restart file is damaged: what it has of grain ", atom->tag[i]));
 }
 
-int FixSpot::size_restart(int) { return GRAIN_COLUMNS + 1; }
+int FixSpot::size_restart(int) { return GRAIN_RECORD; }
 
-int FixSpot::maxsize_restart() { return GRAIN_COLUMNS + 1; }
+int FixSpot::maxsize_restart() { return GRAIN_RECORD; }
 
 double FixSpot::memory_usage() {
   const Model &m = *model;

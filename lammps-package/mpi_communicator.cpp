@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "mpi_communicator.h"
 
+#include <algorithm>
+
 using spot::Bytes;
 
 namespace {
 
 constexpr int tag = 1;
+
+void put_first_of_pairs(void *in, void *in_out, int *n, MPI_Datatype *) {
+  const auto *theirs = static_cast<const spot::Communicator::Pair *>(in);
+  auto *ours = static_cast<spot::Communicator::Pair *>(in_out);
+  for (int k = 0; k < *n; ++k) ours[k] = std::min(ours[k], theirs[k]);
+}
 
 }  // namespace
 
@@ -13,9 +21,16 @@ MpiCommunicator::MpiCommunicator(MPI_Comm world) {
   MPI_Comm_dup(world, &ranks_);  // so that nobody else's messages are taken for ours
   MPI_Comm_rank(ranks_, &rank_);
   MPI_Comm_size(ranks_, &size_);
+  MPI_Type_contiguous(2, MPI_INT64_T, &pair_);
+  MPI_Type_commit(&pair_);
+  MPI_Op_create(put_first_of_pairs, 1, &first_of_pairs_);
 }
 
-MpiCommunicator::~MpiCommunicator() { MPI_Comm_free(&ranks_); }
+MpiCommunicator::~MpiCommunicator() {
+  MPI_Op_free(&first_of_pairs_);
+  MPI_Type_free(&pair_);
+  MPI_Comm_free(&ranks_);
+}
 
 /// The message that comes next from a rank.
 Bytes MpiCommunicator::receive(int from) const {
@@ -77,7 +92,7 @@ std::vector<double> MpiCommunicator::least(std::vector<double> values) {
   return values;
 }
 
-std::int64_t MpiCommunicator::least(std::int64_t value) {
-  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_MIN, ranks_);
-  return value;
+spot::Communicator::Pair MpiCommunicator::first(Pair pair) {
+  MPI_Allreduce(MPI_IN_PLACE, &pair, 1, pair_, first_of_pairs_, ranks_);
+  return pair;
 }

@@ -21,12 +21,14 @@ class MpiCommunicator : public spot::Communicator {
   std::array<spot::Bytes, 2> exchange_with_neighbours(std::array<spot::Bytes, 2> outgoing) override;
   std::vector<std::int64_t> sum(std::vector<std::int64_t> values) override;
   std::vector<double> least(std::vector<double> values) override;
-  std::int64_t least(std::int64_t value) override;
+  Pair first(Pair pair) override;
 
  private:
   spot::Bytes receive(int from) const;
 
   MPI_Comm ranks_;
+  MPI_Datatype pair_;
+  MPI_Op first_of_pairs_;
   int rank_, size_;
 };
 

@@ -9,16 +9,28 @@
 
 #include <mpi.h>
 #include <cstdio>
+#include <new>
+
+namespace {
+
+void fail(const char *reason) {
+  std::fprintf(stderr, "ERROR: %s\n", reason);
+  MPI_Abort(MPI_COMM_WORLD, 1);
+}
+
+}  // namespace
 
 int main(int argc, char **argv) {
   MPI_Init(&argc, &argv);
   {
     LAMMPS_NS::LAMMPS lammps(argc, argv, MPI_COMM_WORLD);
-    if (const char *reason = register_spot(&lammps)) {
-      std::fprintf(stderr, "ERROR: %s\n", reason);
-      MPI_Abort(MPI_COMM_WORLD, 1);
+    if (const char *reason = register_spot(&lammps)) fail(reason);
+    try {
+      lammps.input->file();
+    } catch (const std::bad_alloc &) {
+      // LAMMPS takes lengths in restart files as they are. It is not fit to be taken down then: end before.
+      fail("not enough memory, or a restart file that is damaged");
     }
-    lammps.input->file();
   }
   MPI_Barrier(MPI_COMM_WORLD);
   MPI_Finalize();

@@ -31,6 +31,7 @@ Packing::Packing(double diameter, double extent, const std::vector<Grain>& grain
   if (grains.size() >= nowhere)
     throw InvalidPacking(message("a packing of ", grains.size(), " grains is too large; below 2^32 are allowed"));
   for (const Grain& grain : grains) {
+    if (grain.id < 0) throw InvalidPacking(message("grain id ", grain.id, " is negative"));
     if (!grain.position.allFinite()) throw InvalidPacking(message("position of grain ", grain.id, " is not finite"));
     if (grain.position.cwiseAbs().maxCoeff() > extent)
       throw InvalidPacking(message("grain ", grain.id, " is farther from the origin than ", extent));

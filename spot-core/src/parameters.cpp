@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "spot/dilation_field.hpp"
+#include "spot/elementary.hpp"
 #include "spot/errors.hpp"
 
 namespace spot {
@@ -32,7 +33,7 @@ double SpotParameters::missing_volume(double diameter) const {
 
 double SpotParameters::fastest() const { return dilation > 0.0 ? speed * DilationField::fastest : speed; }
 
-double SpotParameters::equivalent_radius() const { return radius * std::cbrt(mean_share()); }
+double SpotParameters::equivalent_radius() const { return radius * cbrt(mean_share()); }
 
 void SpotParameters::validate() const {
   require_positive("spot radius", radius);

@@ -3,7 +3,7 @@
 
 #include <Random123/philox.h>
 
-#include <cmath>
+#include "spot/elementary.hpp"
 
 namespace spot {
 
@@ -17,6 +17,6 @@ std::array<double, 4> uniform(std::uint64_t seed, RandomPurpose purpose, std::ui
   return numbers;
 }
 
-double exponential(double uniform, double rate) { return -std::log1p(-uniform) / rate; }
+double exponential(double uniform, double rate) { return -log1p(-uniform) / rate; }
 
 }  // namespace spot

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spot/elementary.hpp"
 #include "spot/random.hpp"
 
 namespace spot {
@@ -55,9 +56,9 @@ Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) c
   const auto numbers = numbers_of_birth(parameters_, id);
   const Orifice& orifice = container.orifice();
   const double from_axis = std::max(0.0, orifice.radius - parameters_.radius) * std::sqrt(numbers[1]);
-  const double angle = 2.0 * 3.14159265358979323846 * numbers[2];
   Spot spot{id, 0, orifice.centre, time};
-  spot.position += Vector3(from_axis * std::cos(angle), from_axis * std::sin(angle), -parameters_.radius);
+  spot.position +=
+      Vector3(from_axis * cos_of_turns(numbers[2]), from_axis * sin_of_turns(numbers[2]), -parameters_.radius);
   draw_next_step(spot);
   return spot;
 }

@@ -82,8 +82,10 @@ void TiledPacking::take_out(const std::unordered_set<std::int64_t>& gone, std::v
 
 void TiledPacking::require_new_ids(const std::vector<Grain>& incoming) const {
   std::unordered_set<std::int64_t> ids;
-  for (const Grain& grain : incoming)
+  for (const Grain& grain : incoming) {
+    if (grain.id < 0) throw InvalidPacking(message("grain id ", grain.id, " is negative"));
     if (!ids.insert(grain.id).second) throw InvalidPacking(message("grain ", grain.id, " comes twice"));
+  }
   for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_ && !ids.empty(); ++slot)
     if (occupied(slot) && ids.count(ids_[slot]) != 0)
       throw InvalidPacking(message("grain ", ids_[slot], " is there already"));

@@ -22,10 +22,12 @@ constexpr double largest_radius_in_diameters = 8.0;
 /// No account goes beyond this, however little is relaxed.
 constexpr std::int32_t deepest_in_debt = 1 << 28;
 
-constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+/// The place of a move in the order of moves, the same on all ranks: by spot, then by step.
+using Turn = Communicator::Pair;
 
-/// Moves in their order, the same on all ranks: by spot, then by step, of which no spot takes a million.
-std::int64_t turn_of(const Move& move) { return move.spot << 20 | std::min<std::int64_t>(move.number, (1 << 20) - 1); }
+Turn turn_of(const Move& move) { return {move.spot, move.number}; }
+
+constexpr Turn never = {std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::max()};
 
 }  // namespace
 
@@ -121,7 +123,7 @@ std::size_t TiledPacking::end_before_a_look(const std::vector<Move>& moves, std:
     look |= part.look;
     if (part.look) end = std::min(end, part.lengthened);
   }
-  const std::int64_t own = look ? turn_of(moves[end - 1]) : never, turn = communicator_->least(own);
+  const Turn own = look ? turn_of(moves[end - 1]) : never, turn = communicator_->first(own);
   look_ = turn != never;
   while (turn != own && end > first && turn_of(moves[end - 1]) > turn) --end;
   return end;

@@ -43,7 +43,7 @@ TiledPacking::TiledPacking(double diameter, double extent, const std::vector<Byt
   std::vector<SavedGrain> grains;
   std::vector<SavedCell> cells;
   for (const Bytes& part : saved) {
-    ByteReader reader(part);
+    ByteReader reader = unseal(part);
     const auto grid = reader.take<SavedGrid>();
     if (grid.diameter != diameter || grid.extent != extent)
       throw InvalidState(message("the saved state has grains of diameter ", grid.diameter, " in a box that reaches to ",
@@ -51,7 +51,10 @@ TiledPacking::TiledPacking(double diameter, double extent, const std::vector<Byt
     if (static_cast<std::size_t>(grid.ranks) != saved.size())
       throw InvalidState(message("the saved state has ", saved.size(), " parts, not ", grid.ranks));
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low_[static_cast<Eigen::Index>(axis)] = grid.low[axis];
+      double& low = low_[static_cast<Eigen::Index>(axis)];
+      if (&part != &saved.front() && (grid.low[axis] != low || grid.cells[axis] != n_[axis]))
+        throw InvalidState("the parts of the saved state are not of the same run");
+      low = grid.low[axis];
       n_[axis] = grid.cells[axis];
     }
     take_saved(reader, grains, cells);
@@ -70,6 +73,7 @@ Bytes TiledPacking::save() const {
                           {n_[0], n_[1], n_[2]},
                           static_cast<std::int32_t>(communicator_->size())});
   save_layers(first_layer_ + border_[0], first_layer_ + border_[0] + rank_layers(), bytes);
+  seal(bytes);
   return bytes;
 }
 
@@ -100,6 +104,8 @@ void TiledPacking::take_saved(ByteReader& reader, std::vector<SavedGrain>& grain
     }
   };
   take(grains, reader.take_all<SavedGrain>());
+  for (const SavedGrain& grain : grains)
+    if (grain.id < 0) throw InvalidState(message("the saved state has grain id ", grain.id, ", which is negative"));
   take(cells, reader.take_all<SavedCell>());
 }
 

@@ -35,7 +35,7 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
 TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
                                          const DrainageLimits& limits, std::shared_ptr<const Container> container,
                                          double diameter, double extent, const Bytes& saved)
-    : TimeOrderedDrainage(spots, relaxation, limits, std::move(container), diameter, extent, ByteReader(saved)) {}
+    : TimeOrderedDrainage(spots, relaxation, limits, std::move(container), diameter, extent, unseal(saved)) {}
 
 TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
                                          const DrainageLimits& limits, std::shared_ptr<const Container> container,
@@ -56,6 +56,7 @@ Bytes TimeOrderedDrainage::save() const {
   population_.save(bytes);
   append(bytes, counters_);
   append(bytes, relaxed_everywhere_);
+  seal(bytes);
   return bytes;
 }
 

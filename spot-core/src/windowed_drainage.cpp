@@ -104,8 +104,9 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
 }
 
 void WindowedDrainage::advance_to(double time) {
-  // A time that was meant to be a whole number of windows may be off by rounding.
-  while (static_cast<double>(windows_ + 1) * window_ <= time * (1.0 + 1e-12)) {
+  // A time that was meant to be a whole number of windows may be off by rounding, but never by a window.
+  const double end = time + std::min(1e-12 * time, 0.5 * window_);
+  while (static_cast<double>(windows_ + 1) * window_ <= end) {
     const double now = static_cast<double>(windows_) * window_, until = static_cast<double>(++windows_) * window_;
     set_paces(now);
     give_birth(until);

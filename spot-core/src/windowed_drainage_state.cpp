@@ -19,6 +19,7 @@ Bytes WindowedDrainage::save() const {
     append(bytes, walker.removed);
   }
   append(bytes, packing_.save());
+  seal(bytes);
   return bytes;
 }
 
@@ -27,7 +28,7 @@ std::vector<Bytes> WindowedDrainage::read(const std::vector<Bytes>& saved) {
   if (saved.empty()) throw InvalidState("there is no saved state");
   std::vector<Bytes> packings;
   for (const Bytes& part : saved) {
-    ByteReader reader(part);
+    ByteReader reader = unseal(part);
     windows_ = reader.take<std::int64_t>();
     born_ = reader.take<std::int64_t>();
     next_birth_ = reader.take<double>();

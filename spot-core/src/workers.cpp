@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/workers.hpp"
 
+#include <system_error>
+
 #include "spot/errors.hpp"
 
 namespace spot {
@@ -22,13 +24,22 @@ void rest(int round) {
 
 }  // namespace
 
-Workers::Workers(int threads) {
+Workers::Workers(int threads, std::uint64_t rounds) : first_round_(rounds), round_(rounds) {
   if (threads < 1 || threads > most)
     throw InvalidParameter(message("number of threads is ", threads, " but must be from 1 to ", most));
-  for (int k = 1; k < threads; ++k) helpers_.emplace_back([this, k] { help(k); });
+  thrown_.resize(static_cast<std::size_t>(threads));
+  try {
+    for (int k = 1; k < threads; ++k) helpers_.emplace_back([this, k] { help(k); });
+  } catch (const std::system_error& error) {
+    stop();
+    throw InvalidParameter(
+        message("number of threads is ", threads, " but the system starts no more than ", size(), ": ", error.what()));
+  }
 }
 
-Workers::~Workers() {
+Workers::~Workers() { stop(); }
+
+void Workers::stop() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     stop_ = true;
@@ -50,19 +61,34 @@ void Workers::run(const std::function<void(int)>& job) {
     ++round_;
   }
   wake_.notify_all();
-  job(0);
+  attempt(job, 0);
   for (int k = 0; busy_ != 0; ++k) rest(k);
+  std::exception_ptr first;
+  for (std::exception_ptr& thrown : thrown_) {
+    if (!first) first = thrown;
+    thrown = nullptr;
+  }
+  if (first) std::rethrow_exception(first);
+}
+
+/// Whoever leaves a thread by an exception ends the program.
+void Workers::attempt(const std::function<void(int)>& job, int worker) noexcept {
+  try {
+    job(worker);
+  } catch (...) {
+    thrown_[static_cast<std::size_t>(worker)] = std::current_exception();
+  }
 }
 
 void Workers::help(int worker) {
-  for (int seen = 0;; ++seen) {
+  for (std::uint64_t seen = first_round_;; ++seen) {
     for (int k = 0; k < rounds_awake && round_ == seen; ++k) rest(k);
     if (round_ == seen) {
       std::unique_lock<std::mutex> lock(mutex_);
       wake_.wait(lock, [&] { return round_ != seen; });
     }
     if (stop_) return;
-    (*job_)(worker);
+    attempt(*job_, worker);
     --busy_;
   }
 }

@@ -140,6 +140,20 @@ def test_atom_style_without_radius(tmp_path):
     has(error_of(text, tmp_path), "needs grains with a radius", "atom_style sphere")
 
 
+def test_grains_without_ids(tmp_path):
+    text = (f"atom_style sphere\natom_modify id no\nboundary f f f\ninclude {LOAD_SPOT}\nregion all block -5 5 -4 4 -4 10\n"
+            f"create_box 1 all\ncreate_atoms 1 single 0 0 1\nset type 1 diameter 1\n{fix()}\nrun 1\n")
+    has(error_of(text, tmp_path), "needs grains with IDs", "atom_modify id no")
+
+
+@pytest.mark.parametrize("grain", [-3, 0])
+def test_ids_are_positive(tmp_path, grain):
+    """LAMMPS itself asks for that."""
+    points = lattice()
+    write_data(tmp_path / "packing.data", points, ids=[grain, *range(2, len(points) + 1)])
+    has(error_of(deck(fix()), tmp_path), "Invalid atom ID")
+
+
 def test_before_the_box(tmp_path):
     has(error_of(f"atom_style sphere\ninclude {LOAD_SPOT}\n{fix()}\n", tmp_path), "before simulation box is defined")
 

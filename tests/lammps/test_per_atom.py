@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What has become of each grain: its displacement, and the moves that it has received."""
 
+import struct
+
 import numpy as np
 import pytest
 
@@ -102,6 +104,21 @@ def test_restart(alone, tmp_path, before, after):
 
 def last_frame(folder):
     return (folder / "fates.dump").read_bytes().split(b"ITEM: TIMESTEP")[-1]
+
+
+def test_damaged_restart(tmp_path):
+    """One bit of a displacement, or of the number of values, which counts itself and the checksum."""
+    dump = DUMP.replace("custom 10", "custom 5")
+    _, frames = fates(tmp_path, dump=dump, run="run 5\nwrite_restart half.restart")
+    data = (tmp_path / "half.restart").read_bytes()
+    fallen = frames[-1]["f_drain[3]"].min()
+    at = data.index(struct.pack("<d", fallen))
+    assert struct.unpack_from("<d", data, at - 24)[0] == 6.0 and fallen < -0.1
+    for place in (at, at + 7, at - 24 + 6, at - 24 + 7, at + 16):
+        damaged = bytearray(data)
+        damaged[place] ^= 0x10
+        (tmp_path / "half.restart").write_bytes(damaged)
+        assert "damaged: what it has of grain" in error_of(rest_of(PER_ATOM, 10), tmp_path), place - at
 
 
 def test_restart_that_switches_it_on_or_off(alone, tmp_path):

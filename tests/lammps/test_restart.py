@@ -5,12 +5,13 @@ import os
 import random
 import re
 import signal
+import struct
 import subprocess
 import time
 
 import pytest
 
-from lammps_runs import FIX, FRONT_END, LOAD_SPOT, deck, drain, error_of, needs_mpirun, on_ranks, run, run_ok, run_text, thermo
+from lammps_runs import FIX, FRONT_END, LOAD_SPOT, deck, drain, error_of, lattice, needs_mpirun, on_ranks, run, run_ok, run_text, thermo, write_data
 
 FIX = FIX + " volume 77"
 EXACT = FIX + " accuracy exact"
@@ -116,13 +117,58 @@ def test_half_written_files_are_refused(half, tmp_path):
         assert done.returncode > 0 and "ERROR" in done.stdout + done.stderr, part
 
 
-def test_damaged_state_is_refused(half, tmp_path):
+# From where "spot run" begins: version, lengths, checksum; the head; somewhere among the grains. saved_run_test.cpp has all others.
+@pytest.mark.parametrize("place", [8, 16, 24, 39, 48, 20000])
+def test_damaged_state_is_refused(half, tmp_path, place):
     data = bytearray(half.read_bytes())
-    at = data.index(b"spot run") + len(data) // 4
-    data[at] ^= 0x10
+    data[data.index(b"spot run") + place] ^= 0x10
     (tmp_path / "bad.restart").write_bytes(data)
-    error = error_of(rest_of("bad.restart", 10), tmp_path)
-    assert "restart file is damaged" in error or "saved state" in error
+    assert "damaged" in error_of(rest_of("bad.restart", 10), tmp_path)
+
+
+@pytest.mark.parametrize("bit", [0, 3, 4, 8, 12, 14, 15, 20, 30, 31])
+def test_damaged_length_is_no_crash(half, tmp_path, bit):
+    """Of the state, as LAMMPS reads it: an error, or, where nothing that counts was lost, the same bits. Never what a crash ends with."""
+    data = bytearray(half.read_bytes())
+    at = data.index(b"spot run") - 4
+    length = struct.unpack_from("<i", data, at)[0]
+    assert 0 < length < len(data) - at
+    data[at + bit // 8] ^= 1 << bit % 8
+    (tmp_path / "bad.restart").write_bytes(data)
+    done = run(rest_of("bad.restart", 10), tmp_path)
+    if done.returncode == 0:
+        (tmp_path / "sound").mkdir()
+        run_ok(rest_of(half, 10), tmp_path / "sound")
+        assert snapshots(tmp_path) == snapshots(tmp_path / "sound")
+    else:
+        assert done.returncode > 0 and "ERROR" in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("version", [4, 6])
+def test_another_version_is_refused_with_advice(half, tmp_path, version):
+    """Version 4 has a length where those since have the version again, with all bits flipped."""
+    data = bytearray(half.read_bytes())
+    struct.pack_into("<ii", data, data.index(b"spot run") + 8, version, 45000 if version == 4 else ~version)
+    (tmp_path / "other.restart").write_bytes(data)
+    error = error_of(rest_of("other.restart", 10), tmp_path)
+    assert f"of format {version} of fix spot" in error and "give the fix another ID" in error
+    said = run_ok(rest_of("other.restart", 10).replace("fix drain", "fix other").replace("f_drain", "f_other"), tmp_path)
+    assert thermo(said)["f_other[2]"][0] == 0
+
+
+@needs_mpirun
+@pytest.mark.parametrize("before, after", [(1, 1), (3, 2)])
+def test_emptied_silo_goes_on(tmp_path, before, after):
+    """Spots are born and climb as if it had never stopped; without the restart there is no grain to say how large it was."""
+    write_data(tmp_path / "packing.data", lattice(lambda x, y, z: x * x + y * y < 1.5 and z < 3))
+    whole = thermo(run_ok(deck(fix=FIX, run="run 40\nwrite_restart empty.restart\nrun 20"), tmp_path, launcher=on_ranks(before)))
+    at_restart = list(whole["Step"]).index(40)
+    assert whole["Atoms"][0] == whole["f_drain[3]"][-1] == 14 and whole["Atoms"][at_restart] == 0
+    rest = thermo(run_ok(rest_of("empty.restart", 60), tmp_path, launcher=on_ranks(after)))
+    for column in whole:
+        assert rest[column][-1] == pytest.approx(whole[column][-1], rel=1e-14 if column == "f_drain[4]" else 0), column
+    assert rest["f_drain[1]"][-1] > 0 and rest["f_drain[2]"][-1] > rest["f_drain[2]"][0]
+    assert "no grains" in error_of(rest_of("empty.restart", 60).replace("fix drain", "fix other").replace("f_drain", "f_other"), tmp_path)
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")

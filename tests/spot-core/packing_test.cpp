@@ -275,6 +275,11 @@ TEST(PackingUnit, BadGrainsAreNamed) {
                 Packing(1.0, 10.0, {{5, {0, 0, 0}}, {6, {2, 0, 0}}, {5, {4, 0, 0}}});
               }),
               HasSubstr("id 5 occurs twice"));
+  for (const std::int64_t bad : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::min()})
+    EXPECT_THAT(scenes::text_of<InvalidPacking>([&] {
+                  Packing(1.0, 10.0, {{0, {0, 0, 0}}, {bad, {2, 0, 0}}});
+                }),
+                HasSubstr("grain id " + std::to_string(bad) + " is negative"));
   EXPECT_THROW(Packing(0.0, 10.0, {}), spot::InvalidParameter);
 }
 

@@ -80,8 +80,8 @@ class ThreadRank : public spot::Communicator {
   std::vector<double> least(std::vector<double> values) override {
     return combined(values, [](double& a, double b) { a = std::min(a, b); });
   }
-  std::int64_t least(std::int64_t value) override {
-    return combined(std::vector<std::int64_t>{value}, [](std::int64_t& a, std::int64_t b) { a = std::min(a, b); })[0];
+  Pair first(Pair pair) override {
+    return combined(std::vector<Pair>{pair}, [](Pair& a, const Pair& b) { a = std::min(a, b); })[0];
   }
 
  private:

@@ -206,7 +206,101 @@ TEST(BalanceInvariance, LayersGoWhereTheWorkIsAndNothingElseChanges) {
   EXPECT_GT(balanced[1], 0.25 * 40.0);
 }
 
+/// A spot that goes on for ever: its moves keep their order on all ranks, of which each knows others of them. They are
+/// so long that lists have to be brought up to date between them.
+TEST(CountersInvariance, MovesKeepTheirOrderBeyondAnyNumberOfSteps) {
+  const auto silo = scenes::small_silo(6.0, 4.0);
+  const auto start = filling();
+  const auto moved = [&](int ranks, std::int64_t before) {
+    scenes::Draws draws(11);
+    std::vector<spot::Move> all(60);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      all[k].spot = 7;
+      all[k].number = before + static_cast<std::int64_t>(k);
+      all[k].middle = draws.in_box({-4, -3, 2}, {4, 3, height - 2.0});
+      all[k].step = draws.in_box({-16, -16, -16}, {16, 16, 16});
+    }
+    std::map<std::int64_t, Grain> grains;
+    std::mutex mutex;
+    scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
+      spot::TiledPacking packing(1.0, 100.0, -1.0, communicator->rank() == 0 ? start : std::vector<Grain>{}, *silo,
+                                 communicator);
+      spot::Workers workers(1);
+      std::vector<spot::Move> moves;
+      for (const spot::Move& move : all) {
+        const auto [first, last] = packing.reached(move.middle.z(), 2.6);
+        if (communicator->rank() >= first && communicator->rank() <= last) moves.push_back(move);
+      }
+      packing.displace(
+          moves, {2.6, 2e-2}, [](const auto&, auto&) {}, *silo, workers);
+      const std::lock_guard<std::mutex> lock(mutex);
+      packing.visit_grains([&](const Grain& grain) { grains.emplace(grain.id, grain); });
+    });
+    return grains;
+  };
+  const auto expected = moved(1, 1);
+  ASSERT_EQ(expected.size(), start.size());
+  for (const int bits : {20, 31, 32, 52})
+    for (const int ranks : {1, 3}) EXPECT_EQ(moved(ranks, (std::int64_t{1} << bits) - 30), expected) << bits;
+}
+
+/// A saved state of one rank as it would be so many steps of every spot, spots and windows later.
+Bytes later(const Bytes& saved, std::int64_t steps, std::int64_t spots, std::int64_t windows) {
+  spot::ByteReader reader = spot::unseal(saved);
+  Bytes bytes;
+  const auto shift = [&](auto by) {
+    const auto value = reader.take<decltype(by)>() + by;
+    spot::append(bytes, value);
+    return value;
+  };
+  const double time = static_cast<double>(windows) * window;
+  shift(windows);
+  shift(spots);
+  shift(time);
+  Counters counters = reader.take<Counters>();
+  counters.moves += steps;
+  spot::append(bytes, counters);
+  for (auto n = shift(std::uint64_t{0}); n > 0; --n) {
+    shift(spots);
+    shift(steps);
+    spot::append(bytes, reader.take<spot::Vector3>());
+    shift(time);
+    for (int k = 0; k < 3; ++k) shift(0.0);  // turn, chance, pace
+    spot::append(bytes, reader.take<bool>());
+  }
+  spot::append(bytes, reader.take_all<char>());
+  EXPECT_TRUE(reader.at_end());
+  spot::seal(bytes);
+  return bytes;
+}
+
+/// Steps, spots, moves and windows near the ends of 20, 31, 32 and more bits.
+TEST(CountersInvariance, DrainagesGoOnBeyondAnyCount) {
+  const Scene scene;
+  const Outcome half = drain(scene, 1, 1.0);
+  for (const int bits : {20, 31, 32, 40}) {
+    const std::int64_t limit = std::int64_t{1} << bits, windows = limit - 110;
+    // A whole number of windows, as the fix asks for.
+    const double end = static_cast<double>(windows + 150) * window;
+    const std::vector<Bytes> state = {later(half.saved[0], limit - 2, limit - 150, windows)};
+    const Outcome one = drain(scene, 1, end, [&](int) { return state; });
+    EXPECT_EQ(spot::ByteReader(one.saved[0]).take<std::int64_t>(), windows + 150);
+    EXPECT_GT(one.counters.moves, limit + 100);
+    std::int64_t most_steps = 0;
+    for (const auto& [id, spot] : one.spots) most_steps = std::max(most_steps, spot.steps);
+    EXPECT_GT(most_steps, limit);
+    EXPECT_GT(one.spots.rbegin()->first, limit);
+    expect_same(drain(scene, 3, end, [&](int) { return state; }), one);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Numbers, RanksInvariance, testing::Values(1, 2, 3, 4, 6, 11, 14));
+
+/// One bit: of the beginning first, then anywhere.
+void flip(Bytes& bytes, scenes::Draws& draws, int k) {
+  const std::size_t bit = k < 256 ? static_cast<std::size_t>(k) : draws.below(8 * bytes.size());
+  bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ 1 << bit % 8);
+}
 
 TEST(SavedStateUnit, DamageIsNamed) {
   const Scene scene;
@@ -219,8 +313,18 @@ TEST(SavedStateUnit, DamageIsNamed) {
   for (std::size_t kept = 0; kept < outcome.saved[1].size(); kept += 1 + outcome.saved[1].size() / 97) {
     std::vector<Bytes> saved = outcome.saved;
     saved[1].resize(kept);
-    EXPECT_THAT(go_on_with(saved), HasSubstr("ends early")) << kept << " bytes left";
+    EXPECT_THAT(go_on_with(saved), HasSubstr("saved state")) << kept << " bytes left";
   }
+  scenes::Draws draws(1);
+  for (int k = 0; k < 500; ++k) {
+    std::vector<Bytes> saved = outcome.saved;
+    flip(saved[draws.below(2)], draws, k);
+    EXPECT_THAT(go_on_with(saved), HasSubstr("damaged")) << k;
+  }
+  Scene lower;
+  lower.grains = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 10.0}, 0.01, 2);
+  const Outcome other = drain(lower, 2, 0.5);
+  EXPECT_THAT(go_on_with({outcome.saved[0], other.saved[1]}), HasSubstr("not of the same run"));
 }
 
 TEST(SavedStateInvariance, TheTimeOrderedDriverGoesOnWithTheSameBits) {
@@ -239,6 +343,30 @@ TEST(SavedStateInvariance, TheTimeOrderedDriverGoesOnWithTheSameBits) {
   EXPECT_EQ(rest.counters().moves, whole.counters().moves);
   EXPECT_EQ(rest.counters().sweeps, whole.counters().sweeps);
   EXPECT_EQ(rest.save(), whole.save());
+  scenes::Draws draws(2);
+  for (int k = 0; k < 500; ++k) {
+    Bytes damaged = saved;
+    flip(damaged, draws, k);
+    EXPECT_THROW(spot::TimeOrderedDrainage(scene.spots, relaxation, limits, silo, 1.0, 100.0, damaged), InvalidState);
+  }
+}
+
+/// One bit, two of the same place in words, the length: the checksum is another one.
+TEST(SavedStateUnit, TheChecksumSeesSmallDamage) {
+  Bytes bytes;
+  scenes::Draws draws(3);
+  for (int k = 0; k < 43; ++k) bytes.push_back(static_cast<char>(draws.below(256)));
+  const std::uint64_t whole = spot::checksum(bytes.data(), bytes.size());
+  for (std::size_t a = 0; a < 8 * bytes.size(); ++a)
+    for (std::size_t b = a; b < 8 * bytes.size(); ++b) {
+      Bytes damaged = bytes;
+      damaged[a / 8] = static_cast<char>(damaged[a / 8] ^ 1 << a % 8);
+      if (b != a) damaged[b / 8] = static_cast<char>(damaged[b / 8] ^ 1 << b % 8);
+      ASSERT_NE(spot::checksum(damaged.data(), damaged.size()), whole) << a << ' ' << b;
+    }
+  for (std::size_t kept = 0; kept < bytes.size(); ++kept) EXPECT_NE(spot::checksum(bytes.data(), kept), whole);
+  const Bytes zeros(64, 0);
+  EXPECT_NE(spot::checksum(zeros.data(), 56), spot::checksum(zeros.data(), 64));
 }
 
 TEST(SlabsUnit, ShareLayersOutByGrains) {

@@ -593,6 +593,18 @@ TEST(TiledPackingUnit, SpotsThatAreTooWideAreNamed) {
   EXPECT_EQ(moved[0], whole_share);
 }
 
+/// An empty place has id -1.
+TEST(TiledPackingUnit, NegativeIdsAreNamedAndZeroIsAnId) {
+  const auto space = scenes::empty_space();
+  for (const std::int64_t bad : {std::int64_t{-1}, std::int64_t{-4711}, std::numeric_limits<std::int64_t>::min()})
+    EXPECT_THAT(scenes::text_of<spot::InvalidPacking>([&] {
+                  TiledPacking(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {bad, {3, 1, 1}}}, *space);
+                }),
+                HasSubstr("grain id " + std::to_string(bad) + " is negative"));
+  const std::vector<Grain> grains = {{0, {1, 1, 1}}, {std::numeric_limits<std::int64_t>::max(), {3, 1, 1}}};
+  EXPECT_EQ(sorted_grains(TiledPacking(1.0, 100.0, 0.0, grains, *space)), grains);
+}
+
 TEST(TiledPackingUnit, NoMovesNoGrainsNoError) {
   const auto space = scenes::empty_space();
   Workers workers(2);

@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
+#include <fstream>
 #include <set>
 
 #include "scenes.hpp"
@@ -67,9 +69,68 @@ TEST(WorkersUnit, SleepersWakeUp) {
   }
 }
 
+/// More rounds than 32 bits count.
+TEST(WorkersUnit, RoundsGoOnBeyondAnyCounter) {
+  for (const std::uint64_t limit : {std::uint64_t{1} << 31, std::uint64_t{1} << 32, std::uint64_t{0}}) {
+    Workers workers(3, limit - 5);
+    for (int round = 1; round <= 10; ++round) {
+      std::atomic<int> runs{0};
+      workers.run([&](int) { ++runs; });
+      ASSERT_EQ(runs, 3) << limit << ' ' << round;
+    }
+  }
+}
+
+/// Whichever thread is first by the clock: the lowest worker's, and the next round is as any other.
+TEST(WorkersUnit, ExceptionsReachTheCaller) {
+  for (const int threads : {1, 2, 4, 7}) {
+    Workers workers(threads);
+    for (int round = 0; round < 200; ++round) {
+      const int first = round % threads;
+      const auto job = [&](int worker) {
+        if (worker == first && round % 5 == 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
+        if (worker >= first) throw InvalidParameter("worker " + std::to_string(worker));
+      };
+      EXPECT_EQ(scenes::text_of<InvalidParameter>([&] { workers.run(job); }), "worker " + std::to_string(first));
+      std::atomic<int> runs{0};
+      workers.run([&](int) { ++runs; });
+      EXPECT_EQ(runs, threads);
+    }
+  }
+}
+
+TEST(WorkersUnit, AllHaveReturnedWhenOneThrows) {
+  Workers workers(4);
+  std::atomic<int> runs{0};
+  const auto job = [&](int worker) {
+    if (worker == 0) throw std::bad_alloc();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ++runs;
+  };
+  EXPECT_THROW(workers.run(job), std::bad_alloc);
+  EXPECT_EQ(runs, 3);
+}
+
 TEST(WorkersUnit, CanBeMadeAndDroppedWithoutWork) {
   for (int k = 0; k < 200; ++k) Workers(1 + k % 4);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which need memory for every thread, too
+/// Where the system gives no room for so many stacks.
+TEST(WorkersUnit, ThreadsThatCannotStartAreNamed) {
+  const auto in_little_room = [] {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t room = pages * 4096 + (rlim_t{100} << 20);
+    const rlimit limit = {room, room};
+    if (pages == 0 || setrlimit(RLIMIT_AS, &limit) != 0) std::exit(1);
+    const std::string text = scenes::text_of<InvalidParameter>([] { Workers workers(Workers::most); });
+    std::fprintf(stderr, "%s\n", text.c_str());
+    std::exit(text.empty() ? 1 : 0);
+  };
+  EXPECT_EXIT(in_little_room(), testing::ExitedWithCode(0), "number of threads is 256 but the system starts no more");
+}
+#endif
 
 TEST(WorkersUnit, NumbersOutOfRangeAreNamed) {
   for (const int bad : {0, -1, Workers::most + 1, 1 << 30})

@@ -77,4 +77,14 @@ class ByteReader {
   const char *next_, *end_;
 };
 
+/// Of the bytes and their number: another one for any single bit that changes, and for nearly all other damage.
+std::uint64_t checksum(const char* bytes, std::size_t n);
+
+/// Appends the checksum of all that is there.
+void seal(Bytes& bytes);
+
+/// Reads what was there before it was sealed. Throws InvalidState if it has changed since.
+ByteReader unseal(const char* bytes, std::size_t n);
+inline ByteReader unseal(const Bytes& bytes) { return unseal(bytes.data(), bytes.size()); }
+
 }  // namespace spot

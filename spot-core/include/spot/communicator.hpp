@@ -31,7 +31,10 @@ class Communicator {
 
   /// Least values of all ranks.
   virtual std::vector<double> least(std::vector<double> values) = 0;
-  virtual std::int64_t least(std::int64_t value) = 0;
+
+  /// The pair of any rank that is first in order: by its first number, then by its second.
+  using Pair = std::array<std::int64_t, 2>;
+  virtual Pair first(Pair pair) = 0;
 
   std::int64_t sum(std::int64_t value) { return sum(std::vector<std::int64_t>{value})[0]; }
 };
@@ -46,7 +49,7 @@ class Alone : public Communicator {
   std::array<Bytes, 2> exchange_with_neighbours(std::array<Bytes, 2>) override { return {}; }
   std::vector<std::int64_t> sum(std::vector<std::int64_t> values) override { return values; }
   std::vector<double> least(std::vector<double> values) override { return values; }
-  std::int64_t least(std::int64_t value) override { return value; }
+  Pair first(Pair pair) override { return pair; }
 };
 
 }  // namespace spot

@@ -14,7 +14,7 @@ namespace spot {
 
 /// One grain as it goes into and comes out of a packing.
 struct Grain {
-  std::int64_t id;
+  std::int64_t id;  ///< 0 or more
   Vector3 position;
   bool held = false;  ///< an obstacle: never moves, others are pushed off it
 
@@ -40,8 +40,8 @@ struct Overlap {
 class Packing {
  public:
   /// `extent` is the largest coordinate (absolute value) a grain may ever have; it sets the quantum.
-  /// Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, or an id occurs
-  /// twice.
+  /// Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, or an id is negative
+  /// or occurs twice.
   Packing(double diameter, double extent, const std::vector<Grain>& grains);
 
   double diameter() const { return diameter_; }
