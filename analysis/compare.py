@@ -58,6 +58,7 @@ def main():
     print(report.table(rows))
     print()
     print(report.verdict(rows))
+    command_line.warn_of_left_out({row.name: row.left_out for row in rows if row.left_out})
 
     os.makedirs(options.output, exist_ok=True)
     report.write_json(os.path.join(options.output, "comparison.json"), rows, views)

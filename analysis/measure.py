@@ -9,7 +9,7 @@ from spot_analysis.interpreter import require_packages
 
 require_packages("numpy", "scipy", "zstandard")
 
-from spot_analysis import command_line, run_statistics  # noqa: E402  (only after the check above)
+from spot_analysis import command_line, comparison, run_statistics  # noqa: E402  (only after the check above)
 
 
 def main():
@@ -26,7 +26,9 @@ def main():
                                         warn=command_line.print_warning)
     statistics.save(options.output)
     print(f"{options.output}: {len(statistics.times)} snapshots, t = {statistics.times[0]:g} to "
-          f"{statistics.times[-1]:g} tau, {os.path.getsize(options.output) / 1000:.0f} kB")
+          f"{statistics.times[-1]:g} tau, {os.path.getsize(options.output) / 1000:.0f} kB; "
+          f"grains outside walls and base: at most {statistics.outside.max()}")
+    command_line.warn_of_left_out(comparison.left_out_of(statistics))
 
 
 if __name__ == "__main__":

@@ -101,7 +101,8 @@ def run_deck(options, choice, seed):
             lines = (done.stdout + done.stderr).strip().splitlines() or ["no output"]
             reason = next((line for line in lines if line.startswith("ERROR")), lines[-1])
             raise AnalysisError(f"lmp failed on '{choice}': {reason}")
-        run_statistics.measure(dumps, load_scene(dumps), name, {"source": choice}, concepts=MEASURED).save(stored)
+        run_statistics.measure(dumps, load_scene(dumps), name, {"source": choice}, command_line.print_warning,
+                               MEASURED).save(stored)
         if not options.dumps:
             shutil.rmtree(dumps)
     return run_statistics.load(stored)

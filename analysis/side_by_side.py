@@ -27,7 +27,7 @@ def measured(path):
     """Statistics, from dumps if these are given."""
     if path.endswith(".npz"):
         return run_statistics.load(path)
-    return run_statistics.measure(path, load_scene(path), path, {"source": path}, concepts=one_factor.MEASURED)
+    return run_statistics.measure(path, load_scene(path), path, {"source": path}, command_line.print_warning, one_factor.MEASURED)
 
 
 def read_column(words):
