@@ -135,7 +135,7 @@ def load(path):
     except OSError as error:
         raise AnalysisError(f"{path}: {error.strerror or error}") from error
     except (EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error) as error:
-        raise AnalysisError(f"{path}: not a whole statistics file of measure.py ({error})") from error
+        raise AnalysisError(f"{path}: not a statistics file of measure.py, or a damaged one ({error})") from error
     return RunStatistics(scene, header["provenance"], measured=measured, **arrays)
 
 
