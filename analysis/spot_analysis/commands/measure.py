@@ -9,7 +9,7 @@ from .. import command_line, comparison, run_statistics
 
 def measure():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("dumps", help="folder, file or wildcard of LAMMPS or LIGGGHTS dumps (text or gzip)")
+    parser.add_argument("dumps", help="folder, file or wildcard of LAMMPS or LIGGGHTS dumps (text, gzip or zstd)")
     parser.add_argument("-o", "--output", required=True, metavar="FILE.npz", help="statistics file to write")
     parser.add_argument("--source", help="where the dumps come from, kept in the file (default: the scene's program)")
     command_line.add_scene_options(parser)
