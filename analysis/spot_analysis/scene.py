@@ -81,7 +81,7 @@ def _is_finite(value):
 
 KEYS = tuple(f.name for f in fields(Scene))
 NUMBERS = tuple(f.name for f in fields(Scene) if f.type is float and f.default is MISSING)
-ORIGIN = tuple(f.name for f in fields(Scene) if f.type is float and f.default is not MISSING)  # of time and space, 0 where not said
+ORIGIN = tuple(f.name for f in fields(Scene) if f.type is float and f.default is not MISSING)  # of time and space
 
 
 def load_scene(source, scene_file=None, overrides=None):
