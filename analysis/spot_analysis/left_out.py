@@ -97,7 +97,7 @@ NEEDS = {
 
 def why(view, concept, name):
     """Why the quantity ``name`` of the module ``concept`` is unknown in ``view``, an IntervalView."""
-    needs = NEEDS.get(name) or NEEDS[concept.__name__.rpartition(".")[2]]
+    needs = NEEDS.get(name) or NEEDS.get(concept.__name__.rpartition(".")[2], ())
     reasons = (need(view, name) for need in needs)
     return next((reason for reason in reasons if reason), "the interval does not tell it")
 
