@@ -60,7 +60,7 @@ def follow(positions, duration, velocity):
 
 def write_frame(folder, time, ids, positions):
     path = os.path.join(folder, f"baseline.{round(time / TIMESTEP)}.dump")
-    low, high = positions.min(axis=0), positions.max(axis=0)
+    low, high = (positions.min(axis=0), positions.max(axis=0)) if len(positions) else np.zeros((2, 3))
     with open(path, "w", encoding="ascii") as handle:
         handle.write(f"ITEM: TIMESTEP\n{round(time / TIMESTEP)}\nITEM: NUMBER OF ATOMS\n{len(ids)}\nITEM: BOX BOUNDS ff ff ff\n")
         np.savetxt(handle, np.column_stack([low, high]), fmt="%.8g")
@@ -80,11 +80,13 @@ def main():
     check(options)
     scene = command_line.scene_from_options(options, options.packing)
     frame = next(read_frames(options.packing))
-    ids, positions = frame.ids, frame.positions / scene.diameter
+    ids, positions = frame.ids, scene.positions(frame.positions)
     container = scene.container()
     here = np.abs(positions[:, 0]) < 15
     slab = here & (positions[:, 2] > 15) & (positions[:, 2] < 45)
-    flux = options.outflow / (slab.sum() / (30 * 30 * 2 * container.half_depth)) / (2 * container.half_depth)
+    if options.model == "kinematic" and not slab.any():
+        raise AnalysisError(f"{options.packing}: no grain in |x| < 15 d, 15 d < z < 45 d, whose density makes the outflow a flux")
+    flux = 0 if options.model == "nothing" else options.outflow / (slab.sum() / (30 * 30 * 2 * container.half_depth)) / (2 * container.half_depth)
     os.makedirs(options.output, exist_ok=True)
     with open(os.path.join(options.output, "scene.json"), "w", encoding="utf-8") as handle:
         json.dump({"program": f"baseline: {options.model}", "diameter": 1.0, "gravity": 1.0, "timestep": TIMESTEP,

@@ -33,9 +33,9 @@ def measure(options):
         scene, progress, history = load_scene(source), Progress(source), History(LAG_TAU)
         container = scene.container()
         measurement = measurement or cell_imprint.Measurement(container, (cell_imprint.EDGE, *CONTROLS))
-        for number, frame in enumerate(read_frames(source)):
+        for number, frame in enumerate(read_frames(source, warn=command_line.print_warning)):
             time = scene.time(frame.timestep)
-            snapshot = Snapshot(time, frame.ids, frame.positions / scene.diameter, container, None)
+            snapshot = Snapshot(time, frame.ids, scene.positions(frame.positions), container, None)
             if number == 0:
                 measurement.start(snapshot.positions)
             if options.start - TIME_TOLERANCE <= time <= options.end + TIME_TOLERANCE:

@@ -2,70 +2,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Compare a spot run with a DEM run: one table, comparison.json, plots and a report in HTML."""
 
-import argparse
-import os
-
 from spot_analysis.interpreter import require_packages
 
 require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
-from spot_analysis import command_line, comparison, report  # noqa: E402  (only after the check above)
-from spot_analysis.errors import AnalysisError  # noqa: E402
-from spot_analysis.progress import Progress  # noqa: E402
-
-
-def parse_arguments():
-    parser = argparse.ArgumentParser(
-        description=__doc__, epilog="Each run is a statistics file of measure.py (.npz) or a folder, file or wildcard "
-        "of dumps with a scene.json beside them. Times are counted from the opening of the orifice (TIMESTEP 0).")
-    parser.add_argument("dem", metavar="DEM")
-    parser.add_argument("spot", metavar="SPOT")
-    parser.add_argument("-o", "--output", default="results/silo", metavar="FOLDER", help="(default: %(default)s)")
-    parser.add_argument("--from", dest="start", type=float, metavar="TAU",
-                        help=f"start of the interval (default: {comparison.STEADY_FROM:g} tau, from where flow is "
-                        "steady, if both runs are long enough, else the first common time)")
-    parser.add_argument("--to", dest="end", type=float, metavar="TAU",
-                        help="end of the interval (default: last common time)")
-    for prefix in ("dem-", "spot-"):
-        command_line.add_scene_options(parser, prefix)
-    return parser.parse_args()
-
-
-def require_all_measured(run, source):
-    """one_factor.py stores a part of what is compared here."""
-    missing = [name for name, arrays in run.measured.items() if not vars(arrays)]
-    if missing:
-        raise AnalysisError(f"{source}: the statistics lack {', '.join(missing)}; measure the dumps again with measure.py")
-
-
-def main():
-    options = parse_arguments()
-    dem = command_line.open_run(options.dem, options, "dem-", "DEM")
-    spot = command_line.open_run(options.spot, options, "spot-", "spot")
-    for run, source in ((dem, options.dem), (spot, options.spot)):
-        require_all_measured(run, source)
-    dem_common, spot_common = comparison.common_times(dem, spot)
-    times = dem.times[dem_common]
-    interval = comparison.choose_interval(times, options.start, options.end)
-    views = {"DEM": comparison.IntervalView(dem, dem_common, interval),
-             "spot": comparison.IntervalView(spot, spot_common, interval)}
-    progress = Progress("report")
-    rows = comparison.compare(views["DEM"], views["spot"], progress)
-
-    print(f"common times: {times[0]:g} to {times[-1]:g} tau, {len(times)} snapshots")
-    print(report.describe(views["spot"]))
-    print()
-    print(report.table(rows))
-    print()
-    print(report.verdict(rows))
-
-    os.makedirs(options.output, exist_ok=True)
-    report.write_json(os.path.join(options.output, "comparison.json"), rows, views)
-    pictures = report.draw_pictures(options.output, views, progress)
-    page = os.path.join(options.output, "report.html")
-    report.write_html(page, rows, views, pictures)
-    print(f"\nreport: {page}")
-
+from spot_analysis.commands.compare import main  # noqa: E402  (only after the check above)
 
 if __name__ == "__main__":
-    command_line.run(main)
+    main()

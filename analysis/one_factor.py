@@ -101,19 +101,25 @@ def run_deck(options, choice, seed):
             lines = (done.stdout + done.stderr).strip().splitlines() or ["no output"]
             reason = next((line for line in lines if line.startswith("ERROR")), lines[-1])
             raise AnalysisError(f"lmp failed on '{choice}': {reason}")
-        run_statistics.measure(dumps, load_scene(dumps), name, {"source": choice}, concepts=MEASURED).save(stored)
+        run_statistics.measure(dumps, load_scene(dumps), name, {"source": choice}, command_line.print_warning,
+                               MEASURED).save(stored)
         if not options.dumps:
             shutil.rmtree(dumps)
     return run_statistics.load(stored)
 
 
-def numbers(dem, spot, start=None, end=None):
-    """name -> (DEM, spot) of QUANTITIES from ``start`` to ``end`` (tau), by default over the steady part."""
+def rows(dem, spot, start=None, end=None):
+    """The comparison's rows of QUANTITIES from ``start`` to ``end`` (tau), by default over the steady part."""
     common = comparison.common_times(dem, spot)
     interval = comparison.choose_interval(dem.times[common[0]], start, end)
-    rows = comparison.compare(*(comparison.IntervalView(run, place, interval) for run, place in zip((dem, spot), common)),
-                              sections={"": CONCEPTS})
-    return {row.name: (row.dem, row.spot) for row in rows}
+    found = comparison.compare(*(comparison.IntervalView(run, place, interval) for run, place in zip((dem, spot), common)),
+                               sections={"": CONCEPTS})
+    return [row for row in found if row.name in QUANTITIES]
+
+
+def numbers(dem, spot, start=None, end=None):
+    """name -> (DEM, spot) of these rows."""
+    return {row.name: (row.dem, row.spot) for row in rows(dem, spot, start, end)}
 
 
 def text(values, factor):

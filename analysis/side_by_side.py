@@ -27,7 +27,7 @@ def measured(path):
     """Statistics, from dumps if these are given."""
     if path.endswith(".npz"):
         return run_statistics.load(path)
-    return run_statistics.measure(path, load_scene(path), path, {"source": path}, concepts=one_factor.MEASURED)
+    return run_statistics.measure(path, load_scene(path), path, {"source": path}, command_line.print_warning, one_factor.MEASURED)
 
 
 def read_column(words):
@@ -41,12 +41,14 @@ def main():
     options = parse_arguments()
     dem = measured(options.dem)
     columns = [read_column(words) for words in options.columns]
-    found = {name: [one_factor.numbers(dem, run, options.start, options.end) for run in runs] for name, runs in columns}
+    rows = {name: [one_factor.rows(dem, run, options.start, options.end) for run in runs] for name, runs in columns}
+    found = {name: [{row.name: (row.dem, row.spot) for row in one} for one in runs] for name, runs in rows.items()}
     print("| | DEM | " + " | ".join(found) + " |\n" + "|---" * (len(found) + 2) + "|")
     for name, (heading, factor) in one_factor.QUANTITIES.items():
         dem_value = next(iter(found.values()))[0][name][0]
         cells = [one_factor.text([one[name][1] for one in runs], factor) for runs in found.values()]
         print(f"| {heading} | {one_factor.text([dem_value], factor)} | " + " | ".join(cells) + " |")
+    command_line.warn_of_left_out({row.name: row.left_out for runs in rows.values() for one in runs for row in one if row.left_out})
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ def block_sums(times, samples, span, block=BLOCK_TAU):
     """
     start, end = span
     number = max(int((end - start) / block + 1e-9), 1)
-    index = ((np.asarray(times) - start) / (end - start) * number).astype(int).clip(0, number - 1)
+    index = ((np.asarray(times) - start) / ((end - start) or 1.0) * number).astype(int).clip(0, number - 1)
     present, index = np.unique(index, return_inverse=True)
     sums = np.zeros((len(present), samples.shape[1]))
     np.add.at(sums, index, samples)

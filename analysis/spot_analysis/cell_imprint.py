@@ -16,7 +16,9 @@ import numpy as np
 from scipy import linalg, stats
 
 from .container import Region
+from .errors import AnalysisError
 from .mean_flow import UPPER, WALL_LAYER, Step, about_mean_flow
+from .snapshot import LAG_TAU
 from .structure import close_pairs
 
 EDGE = 1.5
@@ -53,6 +55,9 @@ class Fold:
         index = across[inside] * self._shape[0] + along[inside]
         sums = np.stack([np.bincount(index, column, self._shape[0] * self._shape[1]) for column in values[inside].T], axis=-1)
         self._sums[name] = self._sums.get(name, 0) + sums
+
+    def has(self, name):
+        return name in self._sums
 
     def sums(self, name):
         """(strips, bins along the axis, k)"""
@@ -93,6 +98,8 @@ def imprint(sums, grains):
     weight = np.where(np.arange(len(DISTANCES)) < BINS // 2, 2, 1)  # bins at this distance
     off -= (off @ weight / BINS)[:, None]
     blocks, freedom, scale = len(off), len(DISTANCES) - 1, sums[:, BINS:(cells + 1) * BINS].sum() / BINS
+    if len(off) <= len(DISTANCES):
+        raise AnalysisError(f"{len(off)} blocks are too few for the scatter of {len(DISTANCES)} bins: the silo is too narrow")
     samples = off @ linalg.null_space(weight[None].astype(float))
     mean = samples.mean(axis=0)
     chi_square = float(mean @ np.linalg.solve(np.cov(samples.T) / blocks, mean))
@@ -116,7 +123,9 @@ class Measurement:
         self._folds = {}
 
     def start(self, positions, outlet=0.0):
-        """Of a run, with the packing that its cells were made for."""
+        """Of a run, with the packing that its cells were made for; raises AnalysisError where that is without grains."""
+        if not len(positions):
+            raise AnalysisError("the first snapshot, whose lowest x and y are where the cells begin, is without grains")
         origin = np.array([*positions[:, :2].min(axis=0), outlet])
         self._run = {(axis, period): Fold(axis, origin, period, self._region) for axis in AXES for period in self._periods}
         for key, fold in self._run.items():
@@ -137,11 +146,15 @@ class Measurement:
                          np.column_stack([np.ones(len(w)), w[:, UPPER[0]] * w[:, UPPER[1]]]))
 
     def imprints(self):
-        """(axis, period) -> quantity -> Imprint"""
+        """(axis, period) -> quantity -> Imprint; raises AnalysisError where too little was added for one."""
+        if not all(fold.has("sideways") for folds in self._folds.values() for fold in folds):
+            raise AnalysisError(f"no two snapshots of the interval are {LAG_TAU:g} tau apart, from which motion is taken")
         found = {}
         for key, folds in self._folds.items():
             overlap, sideways = (sum(fold.sums(name) for fold in folds) for name in ("overlap", "sideways"))
             grains, products = overlap[..., 0], sideways[..., 1:]
+            if not (grains.any() and sideways[..., 0].any()):
+                raise AnalysisError(f"no grains in the bulk, {BOTTOM:g} d < z < {TOP:g} d, in the interval")
             squares = about_mean_flow(products.sum(axis=(0, 1)), products.reshape(-1, products.shape[-1])).reshape(products.shape[:2])
             found[key] = {"grains": imprint(grains, np.ones_like(grains)), "overlap": imprint(overlap[..., 1], grains),
                           "sideways": imprint(squares, sideways[..., 0])}

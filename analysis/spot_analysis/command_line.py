@@ -4,9 +4,9 @@
 import os
 import sys
 
-from . import run_statistics
+from . import left_out, run_statistics
 from .errors import AnalysisError
-from .scene import NUMBERS, load_scene
+from .scene import NUMBERS, ORIGIN, load_scene
 
 
 def add_scene_options(parser, prefix=""):
@@ -14,7 +14,7 @@ def add_scene_options(parser, prefix=""):
     group = parser.add_argument_group(f"scene of the {prefix or 'dumps'} (in the dumps' units)".replace("-", ""))
     group.add_argument(f"--{prefix}scene", metavar="FILE",
                        help="JSON file to read instead of scene.json beside the dumps")
-    for key in NUMBERS:
+    for key in NUMBERS + ORIGIN:
         group.add_argument(f"--{prefix}{key.replace('_', '-')}", type=float, metavar="X")
 
 
@@ -22,7 +22,7 @@ def scene_from_options(options, source, prefix=""):
     """The Scene of the dumps ``source``; raises SceneError."""
     values = vars(options)
     key = prefix.replace("-", "_")
-    overrides = {name: values[key + name] for name in NUMBERS}
+    overrides = {name: values[key + name] for name in NUMBERS + ORIGIN}
     return load_scene(source, values[key + "scene"], overrides)
 
 
@@ -38,13 +38,20 @@ def print_warning(text):
     print(f"warning: {text}", file=sys.stderr)
 
 
+def warn_of_left_out(reasons):
+    """One warning for all quantities, name -> why, that are unknown."""
+    text = left_out.summary(reasons)
+    if text:
+        print_warning(text)
+
+
 def run(main):
     """Call main(); turn bad input into one line and exit status 1."""
     try:
         main()
     except AnalysisError as error:
         sys.exit(f"error: {error}")
-    except OSError as error:
-        sys.exit(f"error: {error.filename}: {error.strerror}")
     except BrokenPipeError:
         sys.exit(1)
+    except OSError as error:  # without a name where a write failed, as on a full disk
+        sys.exit(f"error: {error.filename or 'output'}: {error.strerror}")

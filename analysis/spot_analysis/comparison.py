@@ -5,13 +5,13 @@ import math
 from dataclasses import dataclass
 
 from . import (bond_angles, bond_order, counts, fluctuations, free_surface, front, mixing, packing, particle_diffusion,
-               profile_width, radial_distribution, residence, stagnation, thickness, velocity_correlation, voronoi)
+               left_out, profile_width, radial_distribution, residence, stagnation, thickness, velocity_correlation, voronoi)
 from .bounds import BOUNDS, PAPERS
 from .counts import FLUX_HEIGHTS, SLAB
-from .interval import STEADY_FROM, Interval, IntervalView, Value, choose_interval, common_times
+from .interval import STEADY_FROM, Interval, IntervalView, Value, choose_interval, common_times, whole_run
 
 __all__ = ["FLUX_HEIGHTS", "SLAB", "STEADY_FROM", "Interval", "IntervalView", "Row", "Value", "choose_interval",
-           "common_times", "compare", "quantities"]
+           "common_times", "compare", "left_out_of", "quantities"]
 
 # Each concept has quantities(view): name -> Value, and some between(dem view, spot view) for what needs both.
 SECTIONS = {
@@ -30,6 +30,7 @@ class Row:
     difference : spot less DEM, with its standard error where both have one
     bound, met : in words, and whether the spot model keeps it
     paper : (DEM, spot, source) of the literature
+    left_out : why a value is unknown
     """
 
     name: str
@@ -44,6 +45,7 @@ class Row:
     bound: str = None
     met: bool = None
     paper: tuple = None
+    left_out: str = None
 
     def as_dict(self):
         keys = ("unit", "dem", "dem_error", "spot", "spot_error", "difference", "difference_error", "bound", "met")
@@ -57,6 +59,13 @@ def quantities(view):
             for name, value in concept.quantities(view).items()}
 
 
+def left_out_of(run):
+    """name -> why it is unknown, of the numbers of a RunStatistics over the interval that would be chosen."""
+    view = whole_run(run)
+    return {name: left_out.why(view, concept, name) for concepts in SECTIONS.values() for concept in concepts
+            for name, value in concept.quantities(view).items() if value.value is None}
+
+
 def compare(dem_view, spot_view, progress=lambda text: None, sections=SECTIONS):
     """The rows of the comparison; sections : name -> concepts."""
     steady = dem_view.interval.is_steady()
@@ -65,15 +74,22 @@ def compare(dem_view, spot_view, progress=lambda text: None, sections=SECTIONS):
         for concept in concepts:
             progress(f"estimating {concept.__name__.rpartition('.')[2]}")
             dem, spot = concept.quantities(dem_view), concept.quantities(spot_view)
-            rows += [_row(section, name, dem[name], spot[name], steady) for name in dem]
+            for name in dem:
+                lacking = {run: view for run, view, value in (("DEM", dem_view, dem[name]), ("spot", spot_view, spot[name]))
+                           if value.value is None}
+                rows.append(_row(section, concept, name, dem[name], spot[name], steady, lacking))
             if hasattr(concept, "between"):
-                rows += [_row(section, name, Value(value.unit), value, steady)
-                         for name, value in concept.between(dem_view, spot_view).items()]
+                for name, value in concept.between(dem_view, spot_view).items():
+                    lacking = {"DEM": dem_view, "spot": spot_view} if value.value is None else {}
+                    rows.append(_row(section, concept, name, Value(value.unit), value, steady, lacking))
     return rows
 
 
-def _row(section, name, dem, spot, steady):
-    """The Row with its difference, bound and literature; most bounds are judged in steady flow only."""
+def _row(section, concept, name, dem, spot, steady, lacking):
+    """The Row with its difference, bound and literature; most bounds are judged in steady flow only.
+
+    lacking : name -> IntervalView of the runs in which it is unknown
+    """
     difference = error = None
     if dem.value is not None and spot.value is not None:
         difference = spot.value - dem.value
@@ -81,4 +97,5 @@ def _row(section, name, dem, spot, steady):
     bound = BOUNDS.get(name)
     met = bound.is_met(dem.value, dem.error, spot.value) if bound and (steady or bound.always) else None
     return Row(name, section, dem.unit, dem.value, dem.error, spot.value, spot.error, difference, error,
-               bound and bound.text(), met, PAPERS.get(name))
+               bound and bound.text(), met, PAPERS.get(name),
+               left_out.of_runs(lacking, concept, name) if lacking else None)

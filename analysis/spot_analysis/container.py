@@ -63,7 +63,7 @@ class Region:
         """Whether the packing goes on for about ``depth`` above the top, so that every grain has its partners."""
         above = Region(self.half_width, self.top, self.top + depth).contains(positions).sum()
         below = Region(self.half_width, self.top - depth, self.top).contains(positions).sum()
-        return bool(above > 0.75 * below)
+        return bool(above > 0.75 * below > 0)
 
 
 def structure_region(container):

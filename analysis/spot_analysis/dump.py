@@ -2,19 +2,22 @@
 """Reader for the text dumps of LAMMPS and LIGGGHTS (``dump custom``, ``dump atom``).
 
 Plain, gzip or zstd (told by content), one frame or many in a file, any number and order of columns, any number of
-atoms in each frame. Positions are taken from the first complete set of columns among
+atoms in each frame. The coordinate along x is taken from the first column among
 
-    x y z, xu yu zu, xs ys zs, xsu ysu zsu
+    x, xu, xs, xsu
 
-(the walls of a silo are not periodic, so wrapped and unwrapped positions are the same); the last two are
-scaled with the frame's own box. Values are in the dump's own units.
+and where the box is periodic along x, from xu, xsu, or x or xs with the image flags ix, since a wrapped coordinate alone
+does not tell where a grain went; likewise y and z. xs and xsu are scaled with the frame's own box, which may be written
+as a triclinic one without tilt. Values are in the dump's own units.
 """
 
 import contextlib
 import glob
 import gzip
+import io
 import itertools
 import os
+import re
 import warnings
 import zlib
 from dataclasses import dataclass, field
@@ -24,10 +27,9 @@ import zstandard
 
 from .errors import DumpError, TruncatedFrame
 
-POSITION_COLUMNS = (("x", "y", "z"), ("xu", "yu", "zu"), ("xs", "ys", "zs"), ("xsu", "ysu", "zsu"))
-SCALED = POSITION_COLUMNS[2:]
-
-OPENERS = {b"\x1f\x8b": gzip.open, b"\x28\xb5\x2f\xfd": zstandard.open}  # by the first bytes of a file
+AXES = "xyz"
+TILTS = ["xy", "xz", "yz"]
+CUT = "the run was stopped or the disk was full while it was written; write it again, or take the cut frame out of it"
 DAMAGED = (zlib.error, gzip.BadGzipFile, zstandard.ZstdError)
 
 
@@ -75,26 +77,20 @@ def read_frames(source, extra=(), warn=warnings.warn):
     """Yield the frames of ``source`` (see ``find_dumps``) in the order of their timesteps.
 
     extra : names of further columns to return where the file has them
-    warn : called with one line of text when something is left out: a truncated last frame, or a frame whose
-        timestep was read already (runs continued from a restart write one twice)
+    warn : called with one line of text when a frame is left out because its timestep was read already (runs
+        continued from a restart write one twice)
 
-    Raises TruncatedFrame when a file other than the last ends inside a frame or no frame is complete, DumpError
-    for everything else that cannot be read; both name file, line and cause.
+    Raises TruncatedFrame when a file ends inside a frame, DumpError for everything else that cannot be read; both
+    name file, line and cause.
     """
-    paths = find_dumps(source)
     last_step = None
-    for path in paths:
-        try:
-            for frame in read_file(path, extra):
-                if last_step is not None and frame.timestep <= last_step:
-                    warn(f"{path}: timestep {frame.timestep} was read already and is left out")
-                    continue
-                last_step = frame.timestep
-                yield frame
-        except TruncatedFrame as error:
-            if path != paths[-1] or last_step is None:
-                raise
-            warn(f"{error}; that frame is left out")
+    for path in find_dumps(source):
+        for frame in read_file(path, extra):
+            if last_step is not None and frame.timestep <= last_step:
+                warn(f"{path}: timestep {frame.timestep} was read already and is left out")
+                continue
+            last_step = frame.timestep
+            yield frame
 
 
 def read_file(path, extra=()):
@@ -122,7 +118,7 @@ class _Lines:
         try:
             lines = list(itertools.islice(self._handle, count))
         except EOFError as error:
-            raise TruncatedFrame(f"{self.path}: the compressed file ends after line {self.number}") from error
+            raise TruncatedFrame(f"{self.path}: the compressed file ends after line {self.number}: {CUT}") from error
         except DAMAGED as error:
             raise DumpError(f"{self.path}: damaged compressed data after line {self.number} ({error})") from error
         self.number += len(lines)
@@ -132,12 +128,63 @@ class _Lines:
         """The next ``count`` lines; a last line without its end counts as cut off."""
         lines = self.take(count)
         if len(lines) < count or not lines[-1].endswith("\n"):
-            raise TruncatedFrame(f"{self.path}, line {self.number}: the file ends inside {what} "
-                                 f"({len(lines)} of {count} lines)")
+            raise self.cut(f"{what} ({len(lines)} of {count} lines)")
         return lines
+
+    def cut(self, what):
+        return TruncatedFrame(f"{self.path}, line {self.number}: the file ends inside {what}: {CUT}")
 
     def error(self, message, line=None):
         return DumpError(f"{self.path}, line {line or self.number}: {message}")
+
+
+class _ZstdReader(io.RawIOBase):
+    """Decompressed bytes of a zstd file of one or more zstd frames; EOFError where the last is cut.
+
+    zstandard's own reader says nothing of a cut file, and stops after the first zstd frame.
+    """
+
+    CHUNK = 1 << 17  # compressed bytes
+
+    def __init__(self, path):
+        self._file = open(path, "rb")
+        self._decoder = None
+        self._bytes = memoryview(b"")
+
+    def readable(self):
+        return True
+
+    def readinto(self, buffer):
+        while not self._bytes:
+            data = self._file.read(self.CHUNK)
+            if not data:
+                if self._decoder is not None:
+                    raise EOFError("the zstd frame is cut")
+                return 0
+            self._bytes = memoryview(b"".join(self._decompress(data)))
+        count = min(len(buffer), len(self._bytes))
+        buffer[:count] = self._bytes[:count]
+        self._bytes = self._bytes[count:]
+        return count
+
+    def _decompress(self, data):
+        while data:
+            self._decoder = self._decoder or zstandard.ZstdDecompressor().decompressobj()
+            yield self._decoder.decompress(data)
+            data = self._decoder.unused_data
+            if self._decoder.eof:
+                self._decoder = None
+
+    def close(self):
+        self._file.close()
+        super().close()
+
+
+def _open_zstd(path, mode, **options):
+    return io.TextIOWrapper(io.BufferedReader(_ZstdReader(path)), **options)
+
+
+OPENERS = {b"\x1f\x8b": gzip.open, b"\x28\xb5\x2f\xfd": _open_zstd}  # by the first bytes of a file
 
 
 @contextlib.contextmanager
@@ -158,19 +205,19 @@ def _read_frame(lines, extra):
     if header is None:
         return None
     count, columns = header["NUMBER OF ATOMS"], header["ATOMS"]
-    names, scaled = _position_columns(columns, lines)
+    if "id" not in columns:
+        raise lines.error(f"column 'id' is missing (the columns are: {' '.join(columns) or 'none'})")
+    coordinates = [_coordinate(axis, periodic, columns, lines) for axis, periodic in zip(AXES, header["PERIODIC"])]
     optional = [name for name in extra if name in columns]
-    table = _read_table(lines, count, columns, ["id", *names, *optional])
-    order = np.argsort(table[:, 0], kind="stable")
-    table = table[order]
-    ids = _checked_ids(table[:, 0], lines)
-    positions = table[:, 1:4]
-    if scaled:
-        low, high = header["BOX BOUNDS"].T
-        positions = low + positions * (high - low)
+    wanted = ["id", *(name for one in coordinates for name in one.names()), *optional]
+    table = _read_table(lines, count, columns, wanted)
+    table = table[np.argsort(table[:, 0], kind="stable")]
+    named = dict(zip(wanted, table.T))
+    ids = _whole(named["id"], "id", lines)
+    _check_unique(ids, lines)
+    positions = np.stack([one.values(named, bounds, lines) for one, bounds in zip(coordinates, header["BOX BOUNDS"])], axis=1)
     _check_finite(ids, positions, lines)
-    return Frame(header["TIMESTEP"], ids, np.ascontiguousarray(positions), header["BOX BOUNDS"],
-                 dict(zip(optional, table[:, 4:].T)))
+    return Frame(header["TIMESTEP"], ids, positions, header["BOX BOUNDS"], {name: named[name] for name in optional})
 
 
 def _read_header(lines):
@@ -181,7 +228,7 @@ def _read_header(lines):
         if not taken and not header:
             return None
         if not taken or not taken[0].endswith("\n"):
-            raise TruncatedFrame(f"{lines.path}, line {lines.number}: the file ends inside a frame's header")
+            raise lines.cut("a frame's header")
         line = taken[0].strip()
         if not line.startswith("ITEM: "):
             raise lines.error(f"expected a line 'ITEM: ...', found '{line[:60]}'")
@@ -201,14 +248,8 @@ def _read_item(lines, item, header):
         header[item] = int(text)
     elif item in ("TIME", "UNITS"):
         lines.need(1, f"'ITEM: {item}'")
-    elif item.startswith("BOX BOUNDS"):
-        rows = [row.split() for row in lines.need(3, "'ITEM: BOX BOUNDS'")]
-        if any(len(row) != 2 for row in rows):
-            raise lines.error("'ITEM: BOX BOUNDS' wants two numbers an axis (triclinic boxes are not supported)")
-        try:
-            header["BOX BOUNDS"] = np.array(rows, dtype=float)
-        except ValueError as error:
-            raise lines.error(f"'ITEM: BOX BOUNDS': {error}") from error
+    elif item.split()[:2] == ["BOX", "BOUNDS"]:
+        header["BOX BOUNDS"], header["PERIODIC"] = _read_box(lines, item.split()[2:])
     elif item.split()[:1] == ["ATOMS"]:
         header["ATOMS"] = item.split()[1:]
     else:
@@ -216,17 +257,63 @@ def _read_item(lines, item, header):
                           "BOX BOUNDS and ATOMS)")
 
 
-def _position_columns(columns, lines):
-    """Names of the three position columns, and whether they are scaled with the box."""
-    if "id" not in columns:
-        raise lines.error(f"column 'id' is missing (the columns are: {' '.join(columns) or 'none'})")
-    for names in POSITION_COLUMNS:
-        if all(name in columns for name in names):
-            return names, names in SCALED
-    missing = next((name for names in POSITION_COLUMNS if any(n in columns for n in names)
-                    for name in names if name not in columns), "x")
-    raise lines.error(f"column '{missing}' is missing (the columns are: {' '.join(columns)}; positions are wanted as "
-                      + ", ".join(" ".join(names) for names in POSITION_COLUMNS) + ")")
+def _read_box(lines, words):
+    """Bounds (3, 2) and which axes are periodic; words : what follows "BOX BOUNDS" in the header."""
+    tilted = words[:3] == TILTS
+    flags = words[3:] if tilted else words
+    if flags and (len(flags) != 3 or not all(re.fullmatch("[pfsm]{2}", flag) for flag in flags)):
+        raise lines.error(f"'ITEM: BOX BOUNDS' wants the boundaries of three axes, such as 'ff ff ff', found "
+                          f"'{' '.join(words)[:60]}' (general triclinic boxes are not supported)")
+    rows = [row.split() for row in lines.need(3, "'ITEM: BOX BOUNDS'")]
+    if any(len(row) != (3 if tilted else 2) for row in rows):
+        raise lines.error("'ITEM: BOX BOUNDS' wants two numbers an axis" + (", and a tilt" if tilted else
+                          " (a triclinic box has a third, and 'xy xz yz' in the header)"))
+    try:
+        numbers = np.array(rows, dtype=float)
+    except ValueError as error:
+        raise lines.error(f"'ITEM: BOX BOUNDS': {error}") from error
+    if np.any(numbers[:, 2:] != 0):
+        tilts = ", ".join(f"{name} = {tilt:g}" for name, tilt in zip(TILTS, numbers[:, 2]))
+        raise lines.error(f"'ITEM: BOX BOUNDS': the box is tilted ({tilts}); triclinic boxes are read without tilt only")
+    return numbers[:, :2], [flag[0] == "p" for flag in flags or ("ff",) * 3]
+
+
+@dataclass(frozen=True)
+class _Coordinate:
+    """How one coordinate is read.
+
+    column : its name; scaled : whether it counts from 0 to 1 across the box
+    image : column of the image flags to be added, None where it is not wrapped
+    """
+
+    column: str
+    scaled: bool
+    image: str = None
+
+    def names(self):
+        return (self.column, self.image) if self.image else (self.column,)
+
+    def values(self, named, bounds, lines):
+        """(n,) from the columns by name and the box's bounds (2,) along the axis."""
+        low, high = bounds
+        values = low + named[self.column] * (high - low) if self.scaled else named[self.column]
+        return values + _whole(named[self.image], self.image, lines) * (high - low) if self.image else values
+
+
+def _coordinate(axis, periodic, columns, lines):
+    """The _Coordinate of ``axis``; raises DumpError where no column tells it."""
+    plain, scaled = axis, f"{axis}s"
+    unwrapped, unwrapped_scaled, image = f"{axis}u", f"{axis}su", f"i{axis}"
+    order = (unwrapped, unwrapped_scaled, plain, scaled) if periodic else (plain, unwrapped, scaled, unwrapped_scaled)
+    column = next((name for name in order if name in columns), None)
+    if column is None:
+        raise lines.error(f"column '{axis}' is missing (the columns are: {' '.join(columns)}; positions are wanted as "
+                          "x y z, xu yu zu, xs ys zs, xsu ysu zsu)")
+    wrapped = periodic and column in (plain, scaled)
+    if wrapped and image not in columns:
+        raise lines.error(f"the box is periodic along {axis}, where column '{column}' alone does not tell how far grains "
+                          f"went: column '{unwrapped}' or the image flags '{image}' are missing")
+    return _Coordinate(column, column in (scaled, unwrapped_scaled), image if wrapped else None)
 
 
 def _read_table(lines, count, columns, wanted):
@@ -259,15 +346,19 @@ def _bad_row(lines, rows, first, columns, wanted):
     return lines.error("the rows of this frame are not a table of numbers")
 
 
-def _checked_ids(values, lines):
+def _whole(values, column, lines):
+    """The values (n,) as int64; raises DumpError where one is no whole number."""
     with np.errstate(invalid="ignore"):  # NaN is no whole number either
-        ids = values.astype(np.int64)
-    if not np.array_equal(ids, values):
-        raise lines.error("column 'id' holds values that are no whole numbers (frame ending here)")
+        whole = values.astype(np.int64)
+    if not np.array_equal(whole, values):
+        raise lines.error(f"column '{column}' holds values that are no whole numbers (frame ending here)")
+    return whole
+
+
+def _check_unique(ids, lines):
     repeated = np.flatnonzero(np.diff(ids) == 0)
     if repeated.size:
         raise lines.error(f"grain id {ids[repeated[0]]} stands twice in the frame ending here")
-    return ids
 
 
 def _check_finite(ids, positions, lines):
@@ -279,9 +370,9 @@ def _check_finite(ids, positions, lines):
 
 def _nothing_in(path):
     """The error for a file without a single line."""
-    if os.path.getsize(path) > 0:  # zstd says nothing when its data are cut off
-        return TruncatedFrame(f"{path}: the compressed file ends before the first line")
-    return DumpError(f"{path}: the file is empty")
+    if os.path.getsize(path) > 0:
+        return DumpError(f"{path}: the compressed file holds nothing")
+    return DumpError(f"{path}: the file is empty (as dumps are on a full disk)")
 
 
 def _first_timestep(path):

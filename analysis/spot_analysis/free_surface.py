@@ -26,6 +26,8 @@ def surface_heights(positions, at):
 def angle(at, heights):
     """Slope of the straight line through the heights (..., j), as an angle in degrees (...); positive where the
     surface rises towards the walls."""
+    if len(at) < 2:
+        return np.full(heights.shape[:-1], np.nan)
     return np.degrees(np.arctan(fit_line(at, heights)[0]))
 
 
@@ -50,5 +52,10 @@ def quantities(view):
     angles = angle(part.x, part.heights)
     return {"surface_angle": view.mean_of("deg", part.times, angles),
             "surface_angle_last": view.last_of("deg", part.times, angles),
-            "surface_height_axis": view.last_of("d", part.times, part.heights[:, 0]),
-            "surface_height_wall": view.last_of("d", part.times, part.heights[:, -1])}
+            "surface_height_axis": view.last_of("d", part.times, _at(part.heights, 0)),
+            "surface_height_wall": view.last_of("d", part.times, _at(part.heights, -1))}
+
+
+def _at(heights, place):
+    """Heights (T,) at one of the places; not a number in a silo too narrow for any."""
+    return heights[:, place] if heights.shape[1] else np.full(len(heights), np.nan)

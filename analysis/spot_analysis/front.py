@@ -8,6 +8,7 @@ import numpy as np
 from .interval import Value
 
 HEIGHTS = (30, 60, 90)  # d
+FIRST = 1.0  # tau; a first snapshot after it may be after the front
 COVER = 5  # d of packing that must be left above a height
 
 
@@ -38,7 +39,7 @@ def quantities(view):
         named[name] = Value("tau")
         # no front was seen, no final flux, or the surface has come down to the height
         covered = run.count_above(height + COVER)[view.snapshots[-1]] > 0
-        if final.value is None or times[0] > 1 or not view.interval.is_steady() or not covered:
+        if final.value is None or times[0] > FIRST or not view.interval.is_steady() or not covered:
             continue
         when, slope = arrival(times, run.count_above(height)[view.common], final.value)
         sampled = run.times[view.snapshots]

@@ -91,6 +91,12 @@ def choose_interval(times, start=None, end=None):
     return Interval(float(inside[0]), float(inside[-1]), kind)
 
 
+def whole_run(run):
+    """IntervalView of a run by itself, over the interval that is chosen without another; all of it if it is a single snapshot."""
+    interval = choose_interval(run.times) if len(run.times) > 1 else Interval(run.times[0], run.times[0], "everything")
+    return IntervalView(run, np.arange(len(run.times)), interval)
+
+
 class IntervalView:
     """One run seen over the common times and the chosen interval.
 

@@ -31,7 +31,8 @@ class Measurement:
         first = history.first
         start = np.maximum(first.positions[:, 2], 0)
         origin = first.index_of(snapshot.ids)
-        layers = np.where(origin >= 0, (start / LAYER).astype(np.int64)[origin], -1)
+        layers = np.full(len(origin), -1)
+        layers[origin >= 0] = (start / LAYER).astype(np.int64)[origin[origin >= 0]]
         above = (snapshot.positions[:, 2] > 0) & (origin >= 0)
         bands = int(start.max(initial=0) / BAND) + 1
         self._times.append(snapshot.time)

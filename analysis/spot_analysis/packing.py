@@ -22,9 +22,15 @@ def quantities(view):
         "contacts_per_grain": view.mean("1", run.contacts),
         "badness": view.mean("1", run.badness),
         "largest_overlap_region": view.mean("d", run.region_largest_overlap),
-        "largest_overlap": Value("d", float(run.largest_overlap[view.snapshots].max())),
-        "largest_wall_overlap": Value("d", float(run.largest_wall_overlap[view.snapshots].max())),
+        "largest_overlap": _largest(view, run.largest_overlap),
+        "largest_wall_overlap": _largest(view, run.largest_wall_overlap),
     }
+
+
+def _largest(view, overlaps):
+    """The largest of ``overlaps`` (T,) in the interval, unknown where no snapshot has a grain."""
+    measured = view.snapshots[view.run.grains[view.snapshots] > 0]
+    return Value("d", float(overlaps[measured].max()) if len(measured) else None)
 
 
 def between(dem, spot):

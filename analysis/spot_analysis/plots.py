@@ -17,6 +17,7 @@ from .packing import fractions  # noqa: E402
 STYLE = {"DEM": {"color": "#1b4965", "marker": "o", "markersize": 3},
          "spot": {"color": "#d1495b", "marker": "s", "markersize": 3, "linestyle": "--"}}
 LAYER_COLOURS = ["#1b4965", "#f4a259", "#5fa8d3", "#bc4b51", "#8cb369", "#5b3758"]
+LATER_COLOUR = "0.7"  # of grains that were not there at the start
 PAPER_STYLE = {"color": "0.5", "linewidth": 1, "linestyle": ":"}
 TIME_LABEL = r"time ($\tau$)"
 
@@ -108,9 +109,10 @@ def _draw_silo(axis, run, index):
     container = run.scene.container()
     colours = np.array([matplotlib.colors.to_rgba(colour) for colour in LAYER_COLOURS])
     diameter = np.ones(len(x))
+    fill = np.where((layer < 0)[:, None], matplotlib.colors.to_rgba(LATER_COLOUR), colours[layer % len(colours)])
     axis.add_collection(EllipseCollection(
         diameter, diameter, 0 * diameter, units="x", offsets=np.column_stack([x, z]), transOffset=axis.transData,
-        facecolors=colours[layer % len(colours)], edgecolors="white", linewidths=0.15))
+        facecolors=fill, edgecolors="white", linewidths=0.15))
     wall = {"color": "black", "linewidth": 1.2}
     for side in (-1, 1):
         axis.plot([side * container.half_width] * 2, [0, run.levels[-1] + 2], **wall)

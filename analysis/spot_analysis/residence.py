@@ -33,15 +33,17 @@ class Measurement:
         origin = first.index_of(before.ids)
         place = snapshot.index_of(before.ids)
         height = before.positions[:, 2]
-        later = np.where(place >= 0, snapshot.positions[place, 2], -np.inf)
+        later = np.full(len(height), -np.inf)
+        later[place >= 0] = snapshot.positions[place[place >= 0], 2]
         known = (origin >= 0) & (height > 0)
+        origin, height, later = origin[known], height[known], later[known]
         duration = snapshot.time - before.time
         counts = []
         for level, passed in zip(LEVELS, self._passed):
-            passes = np.flatnonzero(known & (height >= level) & (later < level) & np.isnan(passed[origin]))
+            passes = np.flatnonzero((height >= level) & (later < level) & np.isnan(passed[origin]))
             share = (height[passes] - level) / (height[passes] - np.maximum(later[passes], 0))
             passed[origin[passes]] = before.time + duration * share
-            leaves = known & (later <= 0)
+            leaves = later <= 0
             stayed = (before.time + snapshot.time) / 2 - passed[origin[leaves]]
             stayed = np.clip(stayed[np.isfinite(stayed)], 0, EDGES[-1] - 1e-6)
             counts.append(np.bincount((stayed / EDGES[1]).astype(np.int64), minlength=len(EDGES) - 1))

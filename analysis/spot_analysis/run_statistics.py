@@ -7,6 +7,7 @@ A statistics file holds what a comparison over any interval needs, in a few hund
 import json
 import math
 import zipfile
+import zlib
 from dataclasses import dataclass, fields
 from types import SimpleNamespace
 
@@ -18,7 +19,7 @@ from .container import structure_region
 from .dump import find_dumps, read_frames
 from .errors import AnalysisError, DumpError, SceneError
 from .progress import Progress
-from .scene import Scene
+from .scene import Scene, scene_of
 from .snapshot import LAG_TAU, TIME_TOLERANCE, History, Snapshot
 
 FORMAT = "spot-analysis run statistics 3"
@@ -32,6 +33,7 @@ PICTURE_MANY = 100.0
 PICTURE_SPARSE = 100.0
 PICTURE_QUANTUM = 0.01  # d
 LAYER_HEIGHT = 10.0  # d
+BASE_GAP = 1.0  # d; centres of grains at rest on a base are lower
 
 
 @dataclass
@@ -42,7 +44,7 @@ class RunStatistics:
     provenance : text -> text, where the dumps came from
     times : (T,)
     grains : (T,) in the dump
-    levels : (L,) heights, 0, 1, 2 ... d
+    levels : (L,) heights, 0, 1, 2 ... d, up to the highest grain of all snapshots
     above : (T, L) grains above each level
     outside : (T,) grains outside the container
     largest_wall_overlap, largest_overlap : (T,) anywhere above z = 0
@@ -54,7 +56,7 @@ class RunStatistics:
     profile_counts, profile_sums : (P, H, X) grains and sums of their downward velocity
     picture_times : (Q,); picture_sizes : (Q,) grains in each picture
     picture_x, picture_z : positions of the front layer's grains in PICTURE_QUANTUM, one picture after the other
-    picture_layer : layer of LAYER_HEIGHT in which each of them started
+    picture_layer : layer of LAYER_HEIGHT in which each of them started, -1 for those that came later
     measured : the arrays of each of CONCEPTS under its NAME; its class Measurement says which
     """
 
@@ -127,11 +129,14 @@ def load(path):
                 if "." in key:
                     concept, name = key.split(".")
                     setattr(measured[concept], name, _roomy(stored[key]))
+            scene = scene_of(header["scene"])
+    except SceneError as error:
+        raise AnalysisError(f"{path}: {error}") from error
     except OSError as error:
         raise AnalysisError(f"{path}: {error.strerror or error}") from error
-    except (KeyError, ValueError, zipfile.BadZipFile) as error:
-        raise AnalysisError(f"{path}: not a statistics file of measure.py ({error})") from error
-    return RunStatistics(Scene(**header["scene"]), header["provenance"], measured=measured, **arrays)
+    except (EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error) as error:
+        raise AnalysisError(f"{path}: not a statistics file of measure.py, or a damaged one ({error})") from error
+    return RunStatistics(scene, header["provenance"], measured=measured, **arrays)
 
 
 def _compact(array):
@@ -150,26 +155,46 @@ def measure(source, scene, label="dumps", provenance=None, warn=print, concepts=
     """Measure the dumps ``source`` (see ``dump.find_dumps``).
 
     label : for the progress lines
-    warn : called with a line for each frame that is left out
+    warn : called with a line for frames that are left out, and for a scene that does not seem to be that of the dumps
     concepts : those of CONCEPTS to measure
 
-    Raises DumpError, SceneError.
+    Snapshots before the opening of the orifice are left out. Raises DumpError, SceneError.
     """
     files = len(find_dumps(source))
     progress = Progress(label)
     recorder = _Recorder(scene, concepts)
+    early = 0
     for number, frame in enumerate(read_frames(source, extra=("radius",), warn=warn), 1):
+        if scene.time(frame.timestep) < -TIME_TOLERANCE:
+            early += 1
+            continue
         recorder.add(frame)
         total = f" of {files}" if files > 1 else ""
         progress(f"{number} snapshots{total}, t = {recorder.times[-1]:g} tau")
     if not recorder.times:
-        raise DumpError(f"{source}: no frame in it")
+        raise DumpError(f"{source}: all {early} snapshots are from before the orifice opens, at {scene.opening_time:g} "
+                        "(opening_time)")
+    if early:
+        warn(f"{source}: {early} snapshots from before the orifice opens, at {scene.opening_time:g} (opening_time), are left out")
     if abs(recorder.times[0]) > TIME_TOLERANCE:
         warn(f"{source}: the first snapshot is at t = {recorder.times[0]:g} tau; the density drop and the colours of "
              "the layers are relative to it, not to the start")
     progress.finish(f"{len(recorder.times)} snapshots measured, "
                     f"t = {recorder.times[0]:g} to {recorder.times[-1]:g} tau")
-    return recorder.statistics(provenance or {})
+    statistics = recorder.statistics(provenance or {})
+    _warn_of_misfit(source, statistics, recorder.lowest, warn)
+    return statistics
+
+
+def _warn_of_misfit(source, run, lowest, warn):
+    """Grains outside the walls, or a first snapshot that ends far above the base, mean another scene than that of the dumps."""
+    if run.outside.max() > 0:
+        most = int(run.outside.argmax())
+        warn(f"{source}: {run.outside[most]} of {run.grains[most]} grains are outside the walls and the base of the scene at "
+             f"t = {run.times[most]:g} tau")
+    if BASE_GAP < lowest < math.inf:
+        warn(f"{source}: the lowest grain of the first snapshot lies {lowest:g} d above the base of the scene, from which all "
+             "heights count; 'base_z' says where the base is")
 
 
 class _Recorder:
@@ -189,9 +214,9 @@ class _Recorder:
     def add(self, frame):
         self._check(frame)
         time = round(self._scene.time(frame.timestep), 6)
-        positions = frame.positions / self._scene.diameter
+        positions = self._scene.positions(frame.positions)
         if not self.times:
-            self._start(frame.ids, positions)
+            self._start(positions)
         self.times.append(time)
         snapshot = Snapshot(time, frame.ids, positions, self._container, self._region)
         self._history.add(snapshot)
@@ -201,14 +226,12 @@ class _Recorder:
             concept.add(snapshot, self._history)
         snapshot.forget()
         if _is_picture_time(time):
-            self._pictures.append((time, *self._front_layer(frame.ids, positions)))
+            self._pictures.append((time, *self._front_layer(snapshot)))
 
-    def _start(self, ids, positions):
-        height = positions[:, 2].max(initial=0)
-        self._levels = np.arange(0, math.ceil(height) + 1, dtype=float)
+    def _start(self, positions):
+        self.lowest = positions[:, 2].min(initial=math.inf)
         self._edges = np.linspace(-1, 1, max(int(round(2 * self._container.half_width)), 1) + 1) \
             * self._container.half_width
-        self._initial_ids = ids
         self._initial_layer = np.maximum(positions[:, 2] / LAYER_HEIGHT, 0).astype(np.int64)
 
     def _check(self, frame):
@@ -233,7 +256,7 @@ class _Recorder:
         inside = positions[positions[:, 2] > 0]
         values = {
             "grains": len(snapshot.ids),
-            "above": flow.count_above(positions[:, 2], self._levels),
+            "above": flow.count_above(positions[:, 2], _levels_up_to(positions[:, 2].max(initial=0))),
             "outside": int(self._container.outside(positions).sum()),
             "largest_wall_overlap": float(self._container.wall_overlap(positions).max(initial=0)),
             "largest_overlap": structure.largest_overlap(inside),
@@ -262,15 +285,21 @@ class _Recorder:
                 start.positions[first], snapshot.positions[second], snapshot.time - start.time, PROFILE_HEIGHTS,
                 self._edges)))
 
-    def _front_layer(self, ids, positions):
+    def _front_layer(self, snapshot):
         """x, z (PICTURE_QUANTUM) and starting layer of the grains at the wall y = -half_depth."""
+        positions = snapshot.positions
         front = (positions[:, 1] < 1 - self._container.half_depth) & (positions[:, 2] > -1)
-        place = np.searchsorted(self._initial_ids, ids[front]).clip(0, len(self._initial_ids) - 1)
+        place = self._history.first.index_of(snapshot.ids[front])
+        layer = np.full(len(place), -1)
+        layer[place >= 0] = self._initial_layer[place[place >= 0]]
         x, _, z = np.rint(positions[front] / PICTURE_QUANTUM).astype(np.int64).T
         order = np.argsort(z, kind="stable")  # neighbours in the file look alike, so it compresses better
-        return x[order], z[order], self._initial_layer[place][order]
+        return x[order], z[order], layer[order]
 
     def statistics(self, provenance):
+        levels = max((len(snapshot["above"]) for snapshot in self._snapshots))
+        for snapshot in self._snapshots:  # nothing is above the highest grain
+            snapshot["above"] = np.pad(snapshot["above"], (0, levels - len(snapshot["above"])))
         series = {name: np.array([snapshot[name] for snapshot in self._snapshots]) for name in self._snapshots[0]}
         bins = (0, len(PROFILE_HEIGHTS), len(self._edges) - 1)
         profiles = list(zip(*self._profiles)) or [[], [], np.empty(bins, dtype=np.int64), np.empty(bins)]
@@ -278,13 +307,18 @@ class _Recorder:
         x, z, layer = (np.concatenate([np.empty(0, dtype=np.int64), *part]) for part in pictures[1:])
         measured = {name: SimpleNamespace(**concept.arrays()) for name, concept in self._concepts.items()}
         return RunStatistics(
-            scene=self._scene, measured=measured, provenance=provenance, times=np.array(self.times), levels=self._levels,
+            scene=self._scene, measured=measured, provenance=provenance, times=np.array(self.times),
+            levels=np.arange(levels, dtype=float),
             rdf_edges=structure.RDF_EDGES, profile_heights=PROFILE_HEIGHTS, profile_edges=self._edges,
             profile_start=np.array(profiles[0]), profile_end=np.array(profiles[1]),
             profile_counts=np.array(profiles[2]), profile_sums=np.array(profiles[3]),
             picture_times=np.array(pictures[0]),
             picture_sizes=np.array([len(part) for part in pictures[1]], dtype=np.int64),
             picture_x=x, picture_z=z, picture_layer=layer, **series)
+
+
+def _levels_up_to(height):
+    return np.arange(math.ceil(height) + 1, dtype=float)
 
 
 def _is_picture_time(time):

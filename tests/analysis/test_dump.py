@@ -66,6 +66,69 @@ def test_unwrapped_and_scaled_positions(dump):
     np.testing.assert_allclose(only_frame(dump(scaled)).positions, SORTED, atol=1e-11)
 
 
+IMAGES = np.array([[0, 0, 3], [-1, 0, 0], [2, 5, 0]])
+SIZES = np.array([2, 4, 4])  # of the box of frame_text
+CROSSED = (POSITIONS + IMAGES * SIZES)[[1, 2, 0]]
+
+
+def periodic(columns, flags="pp pp pp", **extra):
+    """POSITIONS in a periodic box, that were wrapped by IMAGES; xu and so on hold where grains went."""
+    low = np.array([-1, -2, 0])
+    named = {"{}u": POSITIONS + IMAGES * SIZES, "{}s": (POSITIONS - low) / SIZES, "i{}": IMAGES,
+             "{}su": (POSITIONS + IMAGES * SIZES - low) / SIZES}
+    values = [(name.format(axis), part[:, k]) for name, part in named.items() for k, axis in enumerate("xyz")]
+    text = frame_text(0, IDS, POSITIONS, columns, extra=[*values, *extra.items()])
+    return text.replace("BOUNDS ff ff ff", f"BOUNDS {flags}")
+
+
+@pytest.mark.parametrize("columns", [
+    "id xu yu zu", "id x y z xu yu zu", "id x y z ix iy iz", "id iz iy ix z y x", "id xs ys zs ix iy iz", "id xsu ysu zsu",
+    "id xs ys zs xsu ysu zsu", "id x ix yu zsu"])
+def test_periodic_box(dump, columns):
+    np.testing.assert_allclose(only_frame(dump(periodic(columns))).positions, CROSSED, rtol=0, atol=1e-10)
+
+
+def test_box_that_is_periodic_along_one_axis(dump):
+    frame = only_frame(dump(periodic("id x y z iy", "fs pp mm")))
+    np.testing.assert_allclose(frame.positions, np.column_stack([SORTED[:, 0], CROSSED[:, 1], SORTED[:, 2]]), atol=1e-10)
+
+
+@pytest.mark.parametrize("columns, flags, message", [
+    ("id x y z", "pp ff ff", "periodic along x, where column 'x' alone.*column 'xu' or the image flags 'ix' are missing"),
+    ("id x y z ix", "pp pp ff", "periodic along y"),
+    ("id xs ys zs", "ff ff pp", "periodic along z, where column 'zs' alone"),
+])
+def test_wrapped_positions_are_refused(dump, columns, flags, message):
+    with pytest.raises(DumpError, match=f"a.dump, line 9: .*{message}"):
+        list(read_frames(dump(periodic(columns, flags))))
+
+
+def test_image_flags_are_whole_numbers(dump):
+    with pytest.raises(DumpError, match="a.dump.*column 'iy' holds values that are no whole numbers"):
+        list(read_frames(dump(periodic("id x y z ix iy iz", iy=[0, 0.5, 0]))))
+
+
+def triclinic(*tilts, flags="ff ff ff"):
+    text = frame_text(0, IDS, POSITIONS).replace("BOUNDS ff ff ff", f"BOUNDS xy xz yz {flags}")
+    for bounds, tilt in zip(("-1 1", "-2 2", "0 4"), tilts):
+        text = text.replace(f"\n{bounds}\n", f"\n{bounds} {tilt}\n")
+    return text
+
+
+def test_triclinic_box_without_tilt(dump):
+    frame = only_frame(dump(triclinic("0.0", "-0", "0e0")))
+    np.testing.assert_array_equal(frame.positions, SORTED)
+    np.testing.assert_array_equal(frame.box, [[-1, 1], [-2, 2], [0, 4]])
+    with pytest.raises(DumpError, match="periodic along x"):
+        list(read_frames(dump(triclinic(0, 0, 0, flags="pp ff ff"))))
+
+
+@pytest.mark.parametrize("tilts", [(0.1, 0, 0), (0, -2, 0), (0, 0, 1e-9), ("nan", 0, 0)])
+def test_tilted_box_is_refused(dump, tilts):
+    with pytest.raises(DumpError, match="a.dump, line 8: .*the box is tilted .xy = "):
+        list(read_frames(dump(triclinic(*tilts))))
+
+
 def test_plain_positions_win_over_scaled(dump):
     text = frame_text(0, IDS, POSITIONS, "id xs ys zs x y z", extra=[(n, np.zeros(3)) for n in ("xs", "ys", "zs")])
     np.testing.assert_array_equal(only_frame(dump(text)).positions, SORTED)
@@ -106,42 +169,71 @@ SECOND = FRAMES.index("ITEM: TIMESTEP", 1)
 
 
 @pytest.mark.parametrize("length", [*range(SECOND + 1, len(FRAMES), 7), len(FRAMES) - 1])
-def test_truncated_last_frame_is_dropped_with_a_warning(dump, length):
-    warnings = []
-    frames = list(read_frames(dump(FRAMES[:length]), warn=warnings.append))
-    assert [frame.timestep for frame in frames] == [0]
-    assert len(warnings) == 1 and "a.dump, line" in warnings[0]
+def test_truncated_last_frame_is_an_error_that_names_the_file(dump, length):
+    with pytest.raises(TruncatedFrame, match="a.dump, line .*the file ends inside .*the disk was full"):
+        list(read_frames(dump(FRAMES[:length]), warn=refuse))
 
 
-def test_truncated_frame_raises_when_read_by_file_or_alone(dump):
+def test_truncated_frame_says_how_much_of_it_there_is(dump):
     with pytest.raises(TruncatedFrame, match="a.dump, line"):
         list(read_file(dump(FRAMES[:-5])))
     with pytest.raises(TruncatedFrame, match="2 of 3 lines"):
         list(read_frames(dump("".join(FRAMES[:SECOND].splitlines(True)[:-1]))))
 
 
-def test_truncated_file_in_the_middle_is_an_error(dump, tmp_path):
-    dump(FRAMES[:SECOND - 4], "run.0.dump")
-    dump(FRAMES[SECOND:], "run.5.dump")
-    with pytest.raises(TruncatedFrame, match="run.0.dump"):
+@pytest.mark.parametrize("cut", [0, 1])
+def test_truncated_file_in_a_folder_is_an_error(dump, tmp_path, cut):
+    for number, text in enumerate((FRAMES[:SECOND], FRAMES[SECOND:])):
+        dump(text[:-4] if number == cut else text, f"run.{5 * number}.dump")
+    with pytest.raises(TruncatedFrame, match=f"run.{5 * cut}.dump"):
         list(read_frames(str(tmp_path)))
 
 
-COMPRESSED = {"a.dump.gz": (gzip.compress, "compressed file ends"),
-              "a.dump.zst": (zstandard.compress, "file ends inside")}
+def test_empty_file_in_a_folder_is_an_error(dump, tmp_path):
+    dump(FRAMES[:SECOND], "run.0.dump")
+    dump("", "run.5.dump")
+    with pytest.raises(DumpError, match="run.5.dump: the file is empty"):
+        list(read_frames(str(tmp_path)))
+
+
+COMPRESSED = {"a.dump.gz": gzip.compress, "a.dump.zst": zstandard.compress}
+
+
+@pytest.mark.parametrize("name", COMPRESSED)
+def test_compressed_files_put_together(tmp_path, name):
+    path = tmp_path / name
+    path.write_bytes(b"".join(COMPRESSED[name](text.encode()) for text in (FRAMES[:SECOND], FRAMES[SECOND:])))
+    assert [frame.timestep for frame in read_frames(str(path), warn=refuse)] == [0, 5]
+
+
+@pytest.mark.parametrize("name", COMPRESSED)
+def test_compressed_file_cut_between_frames(tmp_path, name):
+    """Of what was compressed, all that can be read is whole frames."""
+    path = tmp_path / name
+    if name.endswith("gz"):
+        with gzip.open(path, "wt") as file:
+            file.write(FRAMES)
+        path.write_bytes(path.read_bytes()[:-8])  # without checksum and length
+    else:
+        compressor = zstandard.ZstdCompressor().compressobj()
+        path.write_bytes(compressor.compress(FRAMES.encode()) + compressor.flush(zstandard.COMPRESSOBJ_FLUSH_BLOCK))
+    with pytest.raises(TruncatedFrame, match=f"{name}: the compressed file ends after line 24"):
+        list(read_frames(str(path), warn=refuse))
 
 
 @pytest.mark.parametrize("name", COMPRESSED)
 def test_truncated_compressed_file(tmp_path, name):
-    compress, cause = COMPRESSED[name]
+    compress = COMPRESSED[name]
     rng = np.random.default_rng(1)
     text = "".join(frame_text(step, np.arange(5000), rng.random((5000, 3))) for step in (0, 1, 2))
     path = tmp_path / name
     data = compress(text.encode())
     path.write_bytes(data[:len(data) * 5 // 6])
-    warnings = []
-    assert [frame.timestep for frame in read_frames(str(path), warn=warnings.append)] == [0, 1]
-    assert cause in warnings[0]
+    steps = []
+    with pytest.raises(TruncatedFrame, match=f"{name}: the compressed file ends"):
+        for frame in read_frames(str(path), warn=refuse):
+            steps.append(frame.timestep)
+    assert steps == [0, 1]
 
 
 @pytest.mark.parametrize("name, magic", [("a.dump.gz", b"\x1f\x8b"), ("a.dump.zst", b"\x28\xb5\x2f\xfd")])
@@ -170,7 +262,10 @@ BAD = {
     "no count": (FRAMES.replace("ITEM: NUMBER OF ATOMS\n3\n", "", 1), "without an 'ITEM: NUMBER OF ATOMS'"),
     "bad count": (FRAMES.replace("ATOMS\n3\n", "ATOMS\n-3\n", 1), "line 4: .* wants a whole number, found '-3'"),
     "local dump": ("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n0\n", "unknown 'ITEM: NUMBER OF ENTRIES'"),
-    "triclinic": (FRAMES.replace("-1 1", "-1 1 0", 1), "triclinic"),
+    "tilt that the header does not name": (FRAMES.replace("-1 1", "-1 1 0", 1), "triclinic box has a third"),
+    "no tilt that the header names": (FRAMES.replace("BOUNDS ff", "BOUNDS xy xz yz ff", 1), "line 8.*two numbers an axis, and a tilt"),
+    "general triclinic": (FRAMES.replace("BOUNDS ff ff ff", "BOUNDS abc origin", 1), "line 5.*'abc origin' .general triclinic"),
+    "bounds that are no numbers": (FRAMES.replace("-1 1", "-1 b", 1), "BOX BOUNDS"),
 }
 
 
@@ -192,5 +287,5 @@ def test_nothing_to_read(tmp_path):
 def test_zstd_file_cut_before_its_first_line(tmp_path):
     path = tmp_path / "a.dump.zst"
     path.write_bytes(zstandard.compress(FRAMES.encode())[:30])
-    with pytest.raises(TruncatedFrame, match="ends before the first line"):
+    with pytest.raises(TruncatedFrame, match="a.dump.zst: the compressed file ends after line 0"):
         list(read_frames(str(path)))

@@ -84,7 +84,9 @@ COMPRESSED = {"gz": gzip.compress(TEXT.encode(), mtime=0), "zst": zstandard.comp
 @pytest.mark.parametrize("kind", COMPRESSED)
 def test_compressed_cut_at_every_byte(tmp_path, kind):
     for length in range(len(COMPRESSED[kind])):
-        assert_cut_is_noticed(read(tmp_path / f"a.dump.{kind}", COMPRESSED[kind][:length]), len(STEPS))
+        found = read(tmp_path / f"a.dump.{kind}", COMPRESSED[kind][:length])
+        assert_cut_is_noticed(found, len(STEPS))
+        assert found[2], length
 
 
 def same_as_written(frame):

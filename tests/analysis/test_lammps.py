@@ -62,3 +62,24 @@ def test_voronoi_cells_between_walls(tmp_path):
     compared = (points[:, 2] < 10) & np.isfinite(volumes)
     assert compared.sum() > 500
     np.testing.assert_allclose(volumes[compared], expected[compared], rtol=1e-6)
+
+
+FORMS = {"wrapped": "x y z ix iy iz", "unwrapped": "xu yu zu", "scaled": "xs ys zs ix iy iz", "scaled_unwrapped": "xsu ysu zsu",
+         "mixed": "x ix yu zsu z iz"}
+
+
+@pytest.mark.parametrize("boundary, box", [("p p f", ""), ("p f p", "change_box all triclinic\n")])
+def test_periodic_boxes(tmp_path, boundary, box):
+    """Grains that go around the box are where LAMMPS' unwrapped positions say, whatever the columns."""
+    points = sequential_packing(np.random.default_rng(5), 100, [0.5, 3, 3], BOX - [0.5, 3, 3], 0.9)
+    dumps = "".join(f"dump {name} all custom 20 {name}.dump id {columns}\ndump_modify {name} format float %.14g\n"
+                    for name, columns in FORMS.items())
+    run(tmp_path, points, [0, 0, 0], BOX, boundary, f"{box}neigh_modify every 1 delay 0 check no\ntimestep 1\n"
+        f"fix moves all move linear 1.7 0.01 -0.02\n{dumps}run 20")
+    start, expected = read_file(str(tmp_path / "unwrapped.dump"))
+    np.testing.assert_allclose(expected.positions - start.positions, np.tile([34, 0.2, -0.4], (100, 1)), atol=1e-9)
+    for name in FORMS:
+        *_, found = read_file(str(tmp_path / f"{name}.dump"))
+        np.testing.assert_allclose(found.positions, expected.positions, atol=1e-9, err_msg=name)
+    head = (tmp_path / "wrapped.dump").read_text().splitlines()[4]
+    assert head == "ITEM: BOX BOUNDS " + ("xy xz yz pp ff pp" if box else "pp pp ff")

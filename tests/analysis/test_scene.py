@@ -4,9 +4,10 @@
 import json
 import math
 
+import numpy as np
 import pytest
 from spot_analysis.errors import SceneError
-from spot_analysis.scene import NUMBERS, load_scene
+from spot_analysis.scene import KEYS, NUMBERS, ORIGIN, load_scene
 
 from synthetic import SCENE
 
@@ -60,3 +61,31 @@ def test_bad_value_is_named(tmp_path, value):
 def test_bad_file(tmp_path, text):
     with pytest.raises(SceneError, match="scene.json"):
         load_scene(write(tmp_path, text))
+
+
+@pytest.mark.parametrize("key", ["shape", "half_width", "Diameter", ""])
+def test_unknown_key_is_named_with_those_that_are_allowed(tmp_path, key):
+    with pytest.raises(SceneError, match=f"scene.json: unknown scene key '{key}'; allowed are {', '.join(KEYS)}$"):
+        load_scene(write(tmp_path, {**SCENE, key: 1}))
+
+
+def test_key_that_stands_there_twice(tmp_path):
+    text = json.dumps(SCENE)[:-1] + ', "gravity": 9.81}'
+    with pytest.raises(SceneError, match="scene.json: .*key 'gravity' stands there twice"):
+        load_scene(write(tmp_path, text))
+
+
+@pytest.mark.parametrize("key", ORIGIN)
+@pytest.mark.parametrize("value", ["0", None, False, math.nan, -math.inf])
+def test_bad_origin_is_named(tmp_path, key, value):
+    with pytest.raises(SceneError, match=f"'{key}' must be a number"):
+        load_scene(write(tmp_path, {**SCENE, key: value}))
+
+
+def test_origin_of_time_and_space(tmp_path):
+    """In the dumps' units; the orifice opens at 3.5 s, on the axis (0.5, -1, 4) m."""
+    scene = load_scene(write(tmp_path, {**SCENE, "diameter": 0.5, "gravity": 2, "opening_time": 3.5, "axis_x": 0.5, "axis_y": -1,
+                                        "base_z": 4}))
+    assert scene.time(350) == pytest.approx(0, abs=1e-12)
+    assert scene.time(450) == pytest.approx(1 / 0.5)
+    np.testing.assert_allclose(scene.positions(np.array([[0.5, -1, 4], [1, -1, 5]])), [[0, 0, 0], [1, 0, 2]])
