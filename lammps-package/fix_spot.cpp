@@ -135,13 +135,8 @@ struct FixSpot::Model {
   double overlap_after_run = 0.0;
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
-<<<<<<< HEAD
-  bigint windows = 0;   // done since the fix was made; the clock of the spots
-  double window = 0.0;  // in time units; until the first step only what it would be
-=======
   std::int64_t windows = 0;  // done since the fix was made; the clock of the spots
   double window = 0.0;       // in time units; until the first step only what it would be
->>>>>>> library15
   int windows_per_step = 1;
   std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
   bool named_unused_forces = false;
