@@ -2,9 +2,11 @@
 // Grains that somebody else brings, takes or moves.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <unordered_set>
 
+#include "packed.hpp"
 #include "spot/errors.hpp"
 #include "spot/tiled_packing.hpp"
 #include "wrapped_integers.hpp"
@@ -12,6 +14,9 @@
 namespace spot {
 
 namespace {
+
+/// Id of a grain that is about to be taken out.
+constexpr std::int64_t going = std::numeric_limits<std::int64_t>::max();
 
 /// Whole cells from the lowest corner of a grid down to a place, or 0.
 int cells_before(double from_low, double per_edge) {
@@ -22,9 +27,16 @@ int cells_before(double from_low, double per_edge) {
 
 void TiledPacking::change(const std::vector<std::int64_t>& gone, const std::vector<Grain>& come,
                           const Container& container) {
-  cover(come, container);
-  std::vector<Grain> incoming = take_own(come);
-  take_out(of_all_ranks(gone), incoming);
+  require_within_extent(come);
+  const std::vector<std::int64_t> all_gone = of_all_ranks(gone);
+  std::vector<Grain> incoming = come;
+  if (!all_gone.empty()) {
+    mark_going({all_gone.begin(), all_gone.end()});
+    incoming = stay_under_other_ids(come);
+  }
+  cover(incoming, container);
+  incoming = take_own(incoming);
+  if (!all_gone.empty()) take_out_going();
   require_new_ids(incoming);
   std::vector<Place> places;
   for (const Grain& grain : incoming) {
@@ -42,38 +54,61 @@ void TiledPacking::change(const std::vector<std::int64_t>& gone, const std::vect
   for (const Place& place : places) find_larger_overlap(slot(place), least, largest_overlap_of_new_);
 }
 
-std::unordered_set<std::int64_t> TiledPacking::of_all_ranks(const std::vector<std::int64_t>& ids) const {
+std::vector<std::int64_t> TiledPacking::of_all_ranks(const std::vector<std::int64_t>& ids) const {
   Bytes own;
   append(own, ids);
-  std::unordered_set<std::int64_t> all;
+  std::vector<std::int64_t> all;
   for (const Bytes& bytes :
        communicator_->exchange(std::vector<Bytes>(static_cast<std::size_t>(communicator_->size()), own)))
-    for (const auto id : ByteReader(bytes).take_all<std::int64_t>()) all.insert(id);
+    for (const auto id : ByteReader(bytes).take_all<std::int64_t>()) all.push_back(id);
   return all;
 }
 
-/// Takes those of these grains out that this rank has. One that stays where it is under another id, or as a held one or
-/// no longer as one, keeps what is remembered of it, and is taken off `incoming`.
-void TiledPacking::take_out(const std::unordered_set<std::int64_t>& gone, std::vector<Grain>& incoming) {
-  std::map<std::array<std::int64_t, 3>, std::uint32_t> slot_at;
-  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_ && !gone.empty(); ++slot)
-    if (occupied(slot) && gone.count(ids_[slot]) != 0) slot_at[quanta(position(slot) - low_)] = slot;
-  const std::int64_t missing =
-      static_cast<std::int64_t>(gone.size()) - communicator_->sum(static_cast<std::int64_t>(slot_at.size()));
+void TiledPacking::mark_going(const std::unordered_set<std::int64_t>& gone) {
+  std::int64_t found = 0;
+  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot) {
+    if (!occupied(slot) || gone.count(ids_[slot]) == 0) continue;
+    ids_[slot] = going;
+    ++found;
+  }
+  const std::int64_t missing = static_cast<std::int64_t>(gone.size()) - communicator_->sum(found);
   if (missing != 0)
     throw InvalidPacking(message(missing, " of the ", gone.size(),
-                                 " grains that are to be taken out are not there, or not alone in their places"));
-  const auto stays = [&](const Grain& grain) {
-    const auto found = slot_at.find(quanta(grain.position - low_));
-    if (found == slot_at.end()) return false;
-    ids_[found->second] = grain.id;
-    points_[found->second].state = grain.held ? Point::held : Point::free;
-    note_change(found->second);
-    slot_at.erase(found);
-    return true;
-  };
-  incoming.erase(std::remove_if(incoming.begin(), incoming.end(), stays), incoming.end());
-  for (const auto& [at, slot] : slot_at) {
+                                 " grains that are to be taken out are not there, or are there twice"));
+}
+
+/// A grain that stays where it is under another id, or as a held one or no longer as one, keeps what is remembered of
+/// it. It may be on another rank than the one whose layers it has come to. Returns the others of those that come.
+std::vector<Grain> TiledPacking::stay_under_other_ids(const std::vector<Grain>& come) {
+  std::map<std::array<std::int64_t, 3>, std::uint32_t> slot_at;
+  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot)
+    if (occupied(slot) && ids_[slot] == going) slot_at[quanta(position(slot) - low_)] = slot;
+  Bytes own;
+  for (const Grain& grain : come) append(own, grain);
+  std::vector<std::int64_t> stay;
+  for (const Bytes& bytes :
+       communicator_->exchange(std::vector<Bytes>(static_cast<std::size_t>(communicator_->size()), own)))
+    for (ByteReader reader(bytes); !reader.at_end();) {
+      const Grain grain = take_grain(reader);
+      const auto found = slot_at.find(quanta(grain.position - low_));
+      if (found == slot_at.end()) continue;
+      ids_[found->second] = grain.id;
+      points_[found->second].state = grain.held ? Point::held : Point::free;
+      note_change(found->second);
+      slot_at.erase(found);
+      stay.push_back(grain.id);
+    }
+  stay = of_all_ranks(stay);
+  const std::unordered_set<std::int64_t> ids(stay.begin(), stay.end());
+  std::vector<Grain> others;
+  for (const Grain& grain : come)
+    if (ids.count(grain.id) == 0) others.push_back(grain);
+  return others;
+}
+
+void TiledPacking::take_out_going() {
+  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot) {
+    if (!occupied(slot) || ids_[slot] != going) continue;
     note_neighbours_above(slot);
     unlist(slot);
     vacate(slot);
@@ -91,20 +126,23 @@ void TiledPacking::require_new_ids(const std::vector<Grain>& incoming) const {
       throw InvalidPacking(message("grain ", ids_[slot], " is there already"));
 }
 
-/// Lets the grid grow by whole cells until it holds all these places. What is listed stays listed.
-void TiledPacking::cover(const std::vector<Grain>& come, const Container& container) {
-  std::vector<double> cells(6, 0.0);  // to be added below and above along each axis, with the other sign
-  for (const Grain& grain : come) {
+void TiledPacking::require_within_extent(const std::vector<Grain>& come) const {
+  for (const Grain& grain : come)
     if (!grain.position.allFinite() || grain.position.cwiseAbs().maxCoeff() > extent_)
       throw InvalidPacking(message("grain ", grain.id, " at (", grain.position.x(), ", ", grain.position.y(), ", ",
                                    grain.position.z(), ") is beyond the largest coordinate, ", extent_));
+}
+
+/// Lets the grid grow by whole cells until it holds all these places. What is listed stays listed.
+void TiledPacking::cover(const std::vector<Grain>& come, const Container& container) {
+  std::vector<double> cells(6, 0.0);  // to be added below and above along each axis, with the other sign
+  for (const Grain& grain : come)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double from_low = grain.position[static_cast<Eigen::Index>(axis)] - low_[static_cast<Eigen::Index>(axis)];
       const auto n = static_cast<int>(std::floor(from_low * per_edge_[axis])) + 1 - n_[axis];
       cells[axis] = std::min(cells[axis], -1.0 * cells_before(from_low, per_edge_[axis]));
       cells[axis + 3] = std::min(cells[axis + 3], -1.0 * n);
     }
-  }
   cells = communicator_->least(cells);
   if (cells == std::vector<double>(6, 0.0)) return;
   const auto added = [&](std::size_t k) { return static_cast<int>(-cells[k]); };

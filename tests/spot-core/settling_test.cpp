@@ -136,7 +136,7 @@ TEST(SettlingUnit, AGapCloses) {
   double highest = 0.0;
   for (const auto& [id, at] : after) {
     highest = std::max(highest, at.z());
-    if (before.at(id).z() < 5.0) {
+    if (before.at(id).z() < 4.0) {
       EXPECT_EQ(at, before.at(id)) << id;
     }
   }

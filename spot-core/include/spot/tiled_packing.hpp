@@ -281,8 +281,11 @@ class TiledPacking {
   // Others' changes.
   void cover(const std::vector<Grain>& come, const Container& container);
   void grow(const std::array<int, 3>& below, const std::array<int, 3>& above, const Container& container);
-  std::unordered_set<std::int64_t> of_all_ranks(const std::vector<std::int64_t>& ids) const;
-  void take_out(const std::unordered_set<std::int64_t>& gone, std::vector<Grain>& incoming);
+  std::vector<std::int64_t> of_all_ranks(const std::vector<std::int64_t>& ids) const;
+  void mark_going(const std::unordered_set<std::int64_t>& gone);
+  std::vector<Grain> stay_under_other_ids(const std::vector<Grain>& come);
+  void take_out_going();
+  void require_within_extent(const std::vector<Grain>& come) const;
   void require_new_ids(const std::vector<Grain>& incoming) const;
 
   // Grains that come down.
