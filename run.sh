@@ -27,16 +27,22 @@ done
   exit 2
 }
 
+# Ctrl-C ends all of it, whatever the command that it interrupts makes of it.
+trap 'trap - INT; kill -INT $$' INT
+
 scripts/install-packages.sh
-scripts/build.sh default
+scripts/build.sh default lmp spotplugin
 python=$(scripts/python.sh)
 
 results=$PWD/results/silo
-rm -rf "$results/dumps"
+rm -rf "$results"
 mkdir -p "$results"
 echo "== Draining the silo for $time s of flow with fix spot (seed $seed)"
 (cd examples/silo && ../../build/bin/lmp -in in.silo_spot -var time "$time" -var seed "$seed" -var threads "$threads" -var out "$results/dumps" \
   -log "$results/log.lammps")
+# Every 2 tau, and the packing at the start.
+snapshots=$(awk "BEGIN {n = $time / (2 * sqrt(0.003 / 9.81)); k = int(n); print k + (n - k > 1e-6) + 1}")
+"$python" scripts/check_snapshots.py "$results/dumps" "$snapshots"
 
 echo "== Comparing with the DEM reference"
 # DEM takes some tau to start flowing, which the spot model does not describe: left out of runs that are long enough.

@@ -14,6 +14,7 @@
 #include "update.h"
 #include "utils.h"
 
+#include "find_region.h"
 #include "grain_delivery.h"
 #include "mpi_communicator.h"
 #include "region_container.h"
@@ -366,9 +367,8 @@ void FixSpot::make_container() {
     model->container = spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, *command.orifice, buffers);
   } else {
     const std::string &name = std::get<RegionWalls>(command.walls).id;
-    const int index = domain->find_region(name);
-    if (index < 0) throw spot::InvalidContainer(message("region '", name, "' does not exist"));
-    Region *region = domain->regions[index];
+    Region *region = find_region(*domain, name, 0);
+    if (!region) throw spot::InvalidContainer(message("region '", name, "' does not exist"));
     if (region->varshape || region->dynamic_check())
       throw spot::InvalidContainer(message("region '", name, "' moves or changes shape, which is not supported"));
     model->container = std::make_shared<RegionContainer>(region, *command.orifice, buffers);

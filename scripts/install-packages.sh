@@ -19,7 +19,7 @@ done
 [ ${#missing[@]} -gt 0 ] || exit 0
 
 if ! command -v apt-get >/dev/null; then
-  echo "install-packages: this needs Debian 12 (apt-get); elsewhere install what corresponds to: ${missing[*]}" >&2
+  echo "install-packages: this needs Debian 12 or 13 (apt-get); elsewhere install what corresponds to: ${missing[*]}" >&2
   exit 1
 fi
 as_root=()

@@ -7,32 +7,48 @@
 #include "input.h"
 #include "lammps.h"
 
+// Newer versions throw at every error, when they have said what it is; older ones end the program by themselves.
+#if __has_include("exceptions.h")
+#include "exceptions.h"
+#else
+namespace LAMMPS_NS {
+class LAMMPSAbortException {};
+class LAMMPSException {};
+}  // namespace LAMMPS_NS
+#endif
+
 #include <mpi.h>
 #include <cstdio>
 #include <new>
 
-namespace {
+using namespace LAMMPS_NS;
 
-void fail(const char *reason) {
+static void fail(const char *reason) {
   std::fprintf(stderr, "ERROR: %s\n", reason);
   MPI_Abort(MPI_COMM_WORLD, 1);
 }
 
-}  // namespace
+static void run(int argc, char **argv) {
+  // Not destroyed after an error, as in LAMMPS' own main().
+  auto *lammps = new LAMMPS(argc, argv, MPI_COMM_WORLD);
+  if (const char *reason = register_spot(lammps)) fail(reason);
+  lammps->input->file();
+  delete lammps;
+}
 
 int main(int argc, char **argv) {
   MPI_Init(&argc, &argv);
-  {
-    LAMMPS_NS::LAMMPS lammps(argc, argv, MPI_COMM_WORLD);
-    if (const char *reason = register_spot(&lammps)) fail(reason);
-    try {
-      lammps.input->file();
-    } catch (const std::bad_alloc &) {
-      // LAMMPS takes lengths in restart files as they are. It is not fit to be taken down then: end before.
-      fail("not enough memory, or a restart file that is damaged");
-    }
+  int status = 0;
+  try {
+    run(argc, argv);
+  } catch (const LAMMPSAbortException &) {  // at an error of one rank
+    MPI_Abort(MPI_COMM_WORLD, 1);
+  } catch (const LAMMPSException &) {  // of all ranks
+    status = 1;
+  } catch (const std::bad_alloc &) {  // LAMMPS takes lengths in restart files as they are
+    fail("not enough memory, or a restart file that is damaged");
   }
   MPI_Barrier(MPI_COMM_WORLD);
   MPI_Finalize();
-  return 0;
+  return status;
 }

@@ -4,15 +4,22 @@
 
 #include "fix_spot.h"
 #include "lammpsplugin.h"
+#include "register_spot.h"
 #include "version.h"
+
+#include <cstdio>
 
 using namespace LAMMPS_NS;
 
 static Fix *create_fix_spot(LAMMPS *lmp, int narg, char **arg) { return new FixSpot(lmp, narg, arg); }
 
 extern "C" void lammpsplugin_init(void *lmp, void *handle, void *register_function) {
+  if (const char *reason = why_not_for(lmp)) {
+    std::fprintf(stderr, "ERROR: %s\n", reason);
+    return;
+  }
   lammpsplugin_t plugin{};
-  plugin.version = LAMMPS_VERSION;  // LAMMPS warns when it is another one
+  plugin.version = LAMMPS_VERSION;
   plugin.style = "fix";
   plugin.name = "spot";
   plugin.info = "drainage of dense grains by diffusing spots of free volume";

@@ -4,6 +4,7 @@
 Lengths are in grain diameters, times in sqrt(diameter / gravity), unless a deck says otherwise.
 """
 
+import datetime
 import os
 import pathlib
 import re
@@ -112,6 +113,12 @@ def drain(folder, program=FRONT_END, launcher=(), **parts):
     folder.mkdir(exist_ok=True)
     run_ok(deck(**parts), folder, program=program, launcher=launcher)
     return (folder / "grains.dump").read_bytes()
+
+
+def lammps_version(program):
+    """The date that is a LAMMPS' version."""
+    said = subprocess.run([program, "-h"], capture_output=True, text=True, timeout=60).stdout
+    return datetime.datetime.strptime(re.search(r"Simulator - (\d+ \w+ \d+)", said).group(1), "%d %b %Y").date()
 
 
 def error_of(text, folder, **options):

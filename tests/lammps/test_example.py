@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """examples/silo/in.silo_spot, a short stretch of it, on its real packing."""
 
+import hashlib
 import json
 import os
 import re
@@ -14,6 +15,8 @@ import zstandard
 from lammps_runs import DISTRIBUTION, FRONT_END, PLUGIN, ROOT, needs_distribution, needs_mpirun, on_ranks, thermo
 
 SILO = ROOT / "examples" / "silo"
+CHECKSUMS = SILO / "dumps.sha256"  # record_checksums.py writes it
+RECORDED_TIME = 0.06               # s, of the checksums and of the stored logs
 
 
 def run_example(program, out, launcher=(), log="none", **variables):
@@ -102,14 +105,31 @@ def thermo_but_times(log):
     return {name: list(values) for name, values in thermo(log).items() if not name.startswith("CPU")}
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(4, marks=needs_mpirun)])
-def test_stored_log(tmp_path, ranks):
+def checksums(dumps):
+    """SHA-256 of the text of each snapshot: how well it is compressed depends on the version of zstd."""
+    return "".join(f"{hashlib.sha256(text).hexdigest()}  drain.{step}.dump\n" for step, text in dumps.items())
+
+
+@pytest.fixture(scope="module", params=[1, pytest.param(4, marks=needs_mpirun)])
+def recorded_run(request, tmp_path_factory):
+    """Ranks, snapshots and log of the stretch of which checksums and logs are stored."""
+    folder = tmp_path_factory.mktemp("recorded")
+    launcher = on_ranks(request.param) if request.param > 1 else ()
+    return request.param, run_example(FRONT_END, folder / "out", launcher, folder / "log", time=RECORDED_TIME), folder / "log"
+
+
+def test_checksums(recorded_run):
+    """The same bits on every system and with every version of LAMMPS."""
+    _, dumps, _ = recorded_run
+    assert len(dumps) == 3 and checksums(dumps) == CHECKSUMS.read_text()
+
+
+def test_stored_log(recorded_run):
     """The same numbers, on as many ranks; how the logs were made is in examples/silo/README.md."""
+    ranks, _, log = recorded_run
     (stored,) = SILO.glob(f"log.*.silo_spot.g++.{ranks}")
     expected = thermo_but_times(stored.read_text())
     assert len(expected) == 7 and len(expected["Step"]) == 3
-    out, log = tmp_path / "out", tmp_path / "log"
-    run_example(FRONT_END, out, launcher=on_ranks(ranks) if ranks > 1 else (), log=log, time=0.06)
     assert thermo_but_times(log.read_text()) == expected
 
 
