@@ -7,7 +7,24 @@ import subprocess
 
 import pytest
 
-from lammps_runs import PLUGIN, deck, lattice, programs, write_data
+from lammps_runs import LOAD_SPOT, PLUGIN, deck, lattice, needs_distribution, programs, write_data
+
+# A program of the Python that the distribution's LAMMPS is linked with; it runs LAMMPS in its only thread or in another.
+DRIVER = """
+import ctypes, signal, sys, threading
+library = ctypes.CDLL("liblammps.so.0", mode=ctypes.RTLD_GLOBAL)
+library.lammps_open_no_mpi.restype = ctypes.c_void_p
+library.lammps_file.argtypes = [ctypes.c_void_p, ctypes.c_char_p]
+def load():
+    arguments = (ctypes.c_char_p * 5)(b"lmp", b"-log", b"none", b"-screen", b"none")
+    library.lammps_file(library.lammps_open_no_mpi(5, arguments, None), sys.argv[2].encode())
+worker = threading.Thread(target=load)
+if sys.argv[1] == "another":
+    worker.start(); worker.join()
+else:
+    load()
+print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+"""
 
 
 @pytest.fixture
@@ -55,3 +72,12 @@ def test_ignored_interrupt_stays_ignored(start, program):
     process.send_signal(signal.SIGINT)
     wait_for_steps(process, 2000)  # more than a pipe holds, so most are of later
     assert process.poll() is None
+
+
+@needs_distribution
+@pytest.mark.parametrize("thread", ["only", "another"])
+def test_python_program_keeps_its_handler(thread):
+    """KeyboardInterrupt stays what a program gets that runs LAMMPS itself; only its main thread may set a handler."""
+    done = subprocess.run(["/usr/bin/python3", "-c", DRIVER, thread, LOAD_SPOT], env={**os.environ, "SPOT_PLUGIN": PLUGIN},
+                          preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL), capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0 and done.stdout == "True\n", done.stdout + done.stderr
