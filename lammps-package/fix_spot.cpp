@@ -297,7 +297,7 @@ void FixSpot::make_container() {
     Region *region = domain->regions[index];
     if (region->varshape || region->dynamic_check())
       throw spot::InvalidContainer(message("region '", name, "' moves or changes shape, which is not supported"));
-    model->container = std::make_shared<RegionContainer>(region, *command.orifice, buffers);
+    model->container = std::make_shared<RegionContainer>(region, *domain, *command.orifice, buffers);
   }
 }
 

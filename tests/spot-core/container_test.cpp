@@ -25,6 +25,7 @@ using spot::SpotBuffers;
 using spot::Vector3;
 using spot::WallContact;
 using spot::WallContacts;
+using spot::WallOnPath;
 using spot::WalledContainer;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -262,7 +263,10 @@ TEST(ContainerUnit, ContainersHaveNoAxisPlanesUnlessTheySaySo) {
       contacts.add({centre.z(), {0.0, 0.0, 1.0}});
     }
     const Orifice& orifice() const override { return ::orifice; }
-    Vector3 keep_spot_inside(const Vector3&, const Vector3& target) const override { return target; }
+
+   private:
+    std::optional<WallOnPath> first_wall_above(const Vector3&, const Vector3&) const override { return std::nullopt; }
+    std::optional<Vector3> reflect_spot(const Vector3&, const Vector3& target) const override { return target; }
   } bowl;
   EXPECT_TRUE(bowl.axis_planes().empty());
   EXPECT_TRUE(bowl.concurrent());
