@@ -75,12 +75,25 @@ std::optional<spot::WallContact> RegionContainer::nearest_wall(const Vector3 &pl
   return nearest;
 }
 
-std::optional<spot::WallOnPath> RegionContainer::first_wall_above(const Vector3 &from, const Vector3 &to) const {
-  // The base of a region may be off the height of the orifice by rounding.
-  const auto above = [&](const Vector3 &place) {
-    return Vector3(place.x(), place.y(), std::max(place.z(), entrance_height()));
+/// Where the region is asked from: its base may be off the height of the orifice by rounding.
+double RegionContainer::entrance_height() const { return orifice_.centre.z() + 1e-6 * orifice_.radius; }
+
+std::optional<spot::WallOnPath> RegionContainer::first_wall(const Vector3 &from, const Vector3 &to) const {
+  const bool rises = from.z() < orifice_.centre.z();
+  const auto passed = orifice_.passed_at(from, to);
+  if (rises && !passed) return std::nullopt;
+  // Even where the region leads on below, nothing gets past the orifice.
+  auto base = base_.meet(from, to);
+  if (rises && base) return base;
+  const auto place = [&](double share) {
+    const Vector3 at = from + share * (to - from);
+    return Vector3(at.x(), at.y(), std::max(at.z(), entrance_height()));
   };
-  return parts_.first_wall(above(from), above(to));
+  const double begin = rises ? *passed : 0.0, end = passed && !rises ? *passed : 1.0;
+  auto wall = parts_.first_wall(place(begin), place(end));
+  if (!wall) return base;
+  wall->share = begin + wall->share * (end - begin);
+  return wall;
 }
 
 std::optional<Vector3> RegionContainer::reflect_spot(const Vector3 &start, const Vector3 &target) const {
@@ -136,11 +149,11 @@ void RegionContainer::require_mouth() const {
         ++outside;
       else if (!at_rim && (!opens_below(at) || (!near_rim && parts_.first_wall(at, above))))
         ++walled;
-      else if (!at_rim)
-        ++open;
-      else
+      else {
+        open += !near_rim;
         continue;
-      if (!closed && (outside > 0 || walled > 0)) closed = at;
+      }
+      if (!closed) closed = at;
     }
   const Vector3 &c = orifice_.centre;
   const std::string orifice =

@@ -25,13 +25,13 @@ class RegionContainer : public spot::Container {
   void contacts(const spot::Vector3 &centre, double reach, spot::WallContacts &contacts) const override;
   bool concurrent() const override { return false; }
   const spot::Orifice &orifice() const override { return orifice_; }
+  std::optional<spot::WallOnPath> first_wall(const spot::Vector3 &from, const spot::Vector3 &to) const override;
 
  private:
-  std::optional<spot::WallOnPath> first_wall_above(const spot::Vector3 &from, const spot::Vector3 &to) const override;
   std::optional<spot::Vector3> reflect_spot(const spot::Vector3 &start, const spot::Vector3 &target) const override;
   std::optional<spot::WallContact> nearest_wall(const spot::Vector3 &place, double reach) const;
   spot::Vector3 beside_walls(const spot::Vector3 &place, double reach) const;
-  double entrance_height() const { return orifice_.centre.z() + 1e-6 * orifice_.radius; }
+  double entrance_height() const;
   bool opens_below(const spot::Vector3 &place) const;
   void require_mouth() const;
 

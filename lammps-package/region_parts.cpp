@@ -7,6 +7,7 @@
 #include "region.h"
 #include "spot/errors.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,6 +40,41 @@ void visit_faces(Region &shape, bool inside, const Vector3 &at, double reach, Vi
   for (int i = 0; i < n; ++i) visit(Vector3(shape.contact[i].delx, shape.contact[i].dely, shape.contact[i].delz));
 }
 
+/// Where a radius of a cone is 0, Region::surface_exterior finds nothing, or the opposite base from wherever one looks:
+/// the lowest and highest points along its axis seem to be at the same height.
+bool has_point(Region &cone) {
+  constexpr double far = 1e6;
+  Eigen::AlignedBox3d seen;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-far, far}) {
+      Vector3 from(1.0, 0.8, 0.6);  // on the axis of no cone
+      from[axis] = side;
+      bool found = false;
+      visit_faces(cone, false, from, 4.0 * far, [&](const Vector3 &from_wall) {
+        found = true;
+        seen.extend(from - from_wall);
+      });
+      if (!found) return true;
+    }
+  return !(seen.sizes().minCoeff() > 1e-8);
+}
+
+/// The flat ends of a cone along y are reported along z by Region::surface_interior: behind its surface a cone goes on.
+bool misplaces_ends(Region &cone) {
+  if (!cone.bboxflag) return false;
+  const double height = cone.extent_yhi - cone.extent_ylo;
+  for (const double share : {1e-3, 1.0 - 1e-3}) {
+    const Vector3 at(0.5 * (cone.extent_xlo + cone.extent_xhi) + 1e-6 * height, cone.extent_ylo + share * height,
+                     0.5 * (cone.extent_zlo + cone.extent_zhi));
+    bool wrong = false;
+    visit_faces(cone, true, at, 2e-3 * height, [&](const Vector3 &from_wall) {
+      wrong = wrong || is_inside(cone, at - 1.01 * from_wall);
+    });
+    if (wrong) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string way_to_write_mouth(const spot::Orifice &orifice) {
@@ -51,6 +87,7 @@ std::string way_to_write_mouth(const spot::Orifice &orifice) {
 RegionParts::RegionParts(Region *region, Domain &domain, const spot::Orifice &orifice)
     : tolerance_(1e-7 * orifice.radius), whole_(part_of(region, domain)) {
   require_closed(whole_, orifice);
+  require_known_surface(whole_, false);
 }
 
 RegionParts::Part RegionParts::part_of(Region *region, Domain &domain) {
@@ -79,6 +116,21 @@ void RegionParts::require_closed(const Part &part, const spot::Orifice &orifice)
   for (const Part &inner : part.parts) require_closed(inner, orifice);
 }
 
+void RegionParts::require_known_surface(const Part &part, bool obstacle) const {
+  obstacle = obstacle != (part.region->interior == 0);
+  const bool is_cone = std::string(part.region->style) == "cone";
+  // The other parts of a union or intersection see it from outside.
+  if (is_cone && (obstacle || !whole_.parts.empty()) && has_point(*part.region))
+    throw spot::InvalidContainer(spot::message("region '", part.region->id,
+                                               "' is a cone with a point, whose surface LAMMPS does not find from "
+                                               "outside: give its end a small radius instead of 0"));
+  if (is_cone && !obstacle && misplaces_ends(*part.region))
+    throw spot::InvalidContainer(spot::message("region '", part.region->id,
+                                               "' is a cone along y, whose ends LAMMPS does not find: use one along x or "
+                                               "z, or open them"));
+  for (const Part &inner : part.parts) require_known_surface(inner, obstacle);
+}
+
 /// The share of the path up to the place where it enters a convex shape, both of its ends being outside; above 1 if it
 /// does not. The plane through the nearest point of the shape, across the line to it, has all of the shape behind it, so
 /// one may go as far as that plane.
@@ -103,7 +155,8 @@ double RegionParts::entrance(Region &shape, const Vector3 &from, const Vector3 &
     const double distance = away.norm(), nearer = -away.dot(along) / distance;
     if (nearer <= 0.0) return never;
     if (distance <= tolerance_) break;
-    gone += distance / nearer;
+    // Not all the way: behind a plate without thickness one would look away from it.
+    gone += (distance - 0.5 * tolerance_) / nearer;
     if (gone > length) return never;
   }
   return gone / length;

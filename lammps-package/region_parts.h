@@ -25,7 +25,8 @@ std::string way_to_write_mouth(const spot::Orifice &orifice);
 class RegionParts {
  public:
   /// `region` must outlive this. Throws spot::InvalidContainer, naming the part, if LAMMPS cannot tell what is inside,
-  /// since a part of a union or intersection has an open face, or a shape with 'side out'; and if a style is unknown.
+  /// since a part of a union or intersection has an open face, or a shape with 'side out'; or where a
+  /// surface is, since a cone with a point is seen from outside, or has its ends along y; and if a style is unknown.
   RegionParts(Region *region, Domain &domain, const spot::Orifice &orifice);
 
   /// Where the path leaves the region, or where it begins if that is outside. There is no normal where it leaves through
@@ -48,6 +49,7 @@ class RegionParts {
 
   Part part_of(Region *region, Domain &domain);
   void require_closed(const Part &part, const spot::Orifice &orifice) const;
+  void require_known_surface(const Part &part, bool obstacle) const;
   Stay stay(Region &shape, const spot::Vector3 &from, const spot::Vector3 &to) const;
   double entrance(Region &shape, const spot::Vector3 &from, const spot::Vector3 &to) const;
   bool matches(const Part &part, double share, const std::vector<Stay> &stays) const;

@@ -35,21 +35,6 @@ std::optional<double> Orifice::passed_at(const Vector3& from, const Vector3& to)
   return before / (before - after);
 }
 
-std::optional<WallOnPath> Container::first_wall(const Vector3& from, const Vector3& to) const {
-  const double base = orifice().centre.z();
-  const auto passed = orifice().passed_at(from, to);
-  if (!passed) return from.z() < base ? std::nullopt : first_wall_above(from, to);
-  Vector3 passing = from + *passed * (to - from);
-  passing.z() = base;
-  const bool rises = from.z() < base, beside = (passing - orifice().centre).norm() > orifice().radius * (1.0 + 1e-9);
-  const WallOnPath base_around{*passed, {0.0, 0.0, rises ? -1.0 : 1.0}};
-  if (rises && beside) return base_around;
-  auto wall = rises ? first_wall_above(passing, to) : first_wall_above(from, passing);
-  if (!wall) return beside ? std::optional(base_around) : std::nullopt;
-  wall->share = rises ? *passed + wall->share * (1.0 - *passed) : wall->share * *passed;
-  return wall;
-}
-
 Vector3 Container::keep_spot_inside(const Vector3& start, const Vector3& target) const {
   if (const auto end = reflect_spot(start, target)) return *end;
   const Vector3 upwards(start.x(), start.y(), target.z());
@@ -192,11 +177,18 @@ void WalledContainer::other_contacts(const Vector3& centre, double reach, WallCo
   }
 }
 
-std::optional<WallOnPath> WalledContainer::first_wall_above(const Vector3& from, const Vector3& to) const {
+std::optional<WallOnPath> WalledContainer::first_wall(const Vector3& from, const Vector3& to) const {
+  const bool rises = from.z() < orifice_.centre.z();
+  const auto passed = orifice_.passed_at(from, to);
+  if (rises && !passed) return std::nullopt;
+  const double begin = rises ? *passed : 0.0, end = passed && !rises ? *passed : 1.0;
   std::optional<WallOnPath> first;
   for (const Bounded& b : walls_) {
-    const auto wall = b.wall->meet(from, to);
-    if (wall && (!first || wall->share < first->share)) first = wall;
+    auto wall = b.wall->meet(from, to);
+    // Planes go on below the orifice, where they are no walls.
+    if (wall && wall->share < begin && (wall = b.wall->meet(from + begin * (to - from), to)))
+      wall->share = begin + wall->share * (1.0 - begin);
+    if (wall && wall->share <= end && (!first || wall->share < first->share)) first = wall;
   }
   return first;
 }

@@ -129,8 +129,29 @@ void Drainage::require_left_through_orifice(std::size_t first) const {
   }
 }
 
+void Drainage::require_off_walls() const {
+  Overlap deepest{limits_.largest_overlap, -1, -1};
+  WallContacts contacts;
+  visit_grains([&](const Grain& grain) {
+    // Held grains may be part of the walls, and there are none below the orifice.
+    if (grain.held || grain.position.z() < container_->orifice().centre.z()) return;
+    const double reach = (0.5 - limits_.largest_overlap) * diameter_;
+    if (!(reach > 0.0)) return;
+    container_->contacts(grain.position, reach, contacts);
+    for (const WallContact& contact : contacts) {
+      const double depth = 0.5 - contact.distance / diameter_;
+      if (depth > deepest.depth || (depth == deepest.depth && grain.id < deepest.first))
+        deepest = {depth, grain.id, -1};
+    }
+  });
+  if (deepest.first >= 0)
+    throw InvalidPacking(message("grain ", deepest.first, " overlaps a wall by ", deepest.depth,
+                                 " diameters at the start; at most ", limits_.largest_overlap, " is allowed"));
+}
+
 void Drainage::require_valid_start() {
   require_inside(limits_.outlet, container_->orifice().radius + diameter_);
+  require_off_walls();
   const Overlap overlap = largest_overlap();
   if (overlap.depth > limits_.largest_overlap)
     throw InvalidPacking(message("grains ", overlap.first, " and ", overlap.second, " overlap by ", overlap.depth,

@@ -263,9 +263,9 @@ TEST(ContainerUnit, ContainersHaveNoAxisPlanesUnlessTheySaySo) {
       contacts.add({centre.z(), {0.0, 0.0, 1.0}});
     }
     const Orifice& orifice() const override { return ::orifice; }
+    std::optional<WallOnPath> first_wall(const Vector3&, const Vector3&) const override { return std::nullopt; }
 
    private:
-    std::optional<WallOnPath> first_wall_above(const Vector3&, const Vector3&) const override { return std::nullopt; }
     std::optional<Vector3> reflect_spot(const Vector3&, const Vector3& target) const override { return target; }
   } bowl;
   EXPECT_TRUE(bowl.axis_planes().empty());

@@ -235,11 +235,11 @@ class OneAtATime : public spot::Container {
   }
   bool concurrent() const override { return false; }
   const spot::Orifice& orifice() const override { return walls_->orifice(); }
-
- private:
-  std::optional<spot::WallOnPath> first_wall_above(const spot::Vector3& from, const spot::Vector3& to) const override {
+  std::optional<spot::WallOnPath> first_wall(const spot::Vector3& from, const spot::Vector3& to) const override {
     return walls_->first_wall(from, to);
   }
+
+ private:
   std::optional<spot::Vector3> reflect_spot(const spot::Vector3& start, const spot::Vector3& target) const override {
     return walls_->keep_spot_inside(start, target);
   }

@@ -86,9 +86,8 @@ class Container {
   /// May a grain that is here now, below the orifice, have come out of it? Else it went through a wall.
   virtual bool may_have_left_to(const Vector3&) const { return true; }
 
-  /// The first wall on the straight path between two places. At the height of the orifice it is all around it; below,
-  /// there are no walls.
-  std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const;
+  /// The first wall on the straight path between two places. Below the height of the orifice there are none.
+  virtual std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const = 0;
 
   /// Where a spot at `start` that wants to step to `target` ends. The step is straight, and no wall lies across it:
   /// it is reflected at walls, to end at least the spot's buffer away from each; where it is too narrow for that, only
@@ -99,9 +98,6 @@ class Container {
   void require_entrance(double spot_radius) const;
 
  private:
-  /// As first_wall(), of a path above the orifice or from and to its height.
-  virtual std::optional<WallOnPath> first_wall_above(const Vector3& from, const Vector3& to) const = 0;
-
   /// `target`, reflected until the spot fits there and no wall lies across the step from `start`; or nothing.
   virtual std::optional<Vector3> reflect_spot(const Vector3& start, const Vector3& target) const = 0;
 };
@@ -185,9 +181,9 @@ class WalledContainer : public Container {
   const std::vector<AxisPlane>& axis_planes() const override { return axis_planes_; }
   void other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
   const Orifice& orifice() const override { return orifice_; }
-  bool may_have_left_to(const Vector3& centre) const override;
+  bool may_have_left_to(const Vector3& centre) const override;  std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const override;
+
  private:
-  std::optional<WallOnPath> first_wall_above(const Vector3& from, const Vector3& to) const override;
   std::optional<Vector3> reflect_spot(const Vector3& start, const Vector3& target) const override;
 
   struct Bounded {
