@@ -221,12 +221,16 @@ Vector3 RegionParts::normal(const Vector3 &from, const Vector3 &to, double share
   Vector3 normal = Vector3::Zero();
   double first = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
-    if (std::min(std::abs(stays[k].enters - share), std::abs(stays[k].leaves - share)) * length > near) continue;
-    visit_faces(*shapes_[k], is_inside(*shapes_[k], at), at, 4.0 * near, [&](const Vector3 &from_wall) {
-      const double distance = from_wall.norm(), nearer = -from_wall.dot(along) / distance;
+    const double enters = std::abs(stays[k].enters - share), leaves = std::abs(stays[k].leaves - share);
+    if (std::min(enters, leaves) * length > near) continue;
+    const bool inside = is_inside(*shapes_[k], at);
+    visit_faces(*shapes_[k], inside, at, 4.0 * near, [&](const Vector3 &from_wall) {
+      // A path that touches may be seen from the wrong side of the surface.
+      const double distance = from_wall.norm(), side = inside == (leaves < enters) ? 1.0 : -1.0;
+      const double nearer = -side * from_wall.dot(along) / distance;
       if (!(nearer > 0.0) || distance / nearer >= first) return;
       first = distance / nearer;
-      normal = from_wall / distance;
+      normal = side * from_wall / distance;
     });
   }
   return normal;
