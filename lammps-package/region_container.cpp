@@ -104,6 +104,7 @@ std::optional<Vector3> RegionContainer::reflect_spot(const Vector3 &start, const
   for (int round = 0; round < rounds; ++round) {
     position = base_.reflect_spot(buffers_.base, position);
     if ((position - start).norm() > longest) break;
+    if (base_.meet(start, position)) break;
     if (const auto wall = first_wall(start, position)) {
       if (wall->normal.isZero()) break;
       const double behind = wall->normal.dot(start + wall->share * (position - start) - position);
@@ -167,13 +168,15 @@ void RegionContainer::require_mouth() const {
     throw spot::InvalidContainer(spot::message(orifice, " reaches beyond the mouth of ", region, ": at (", closed->x(),
                                                ", ", closed->y(), ", ", closed->z(), ") there is a wall"));
   constexpr double widest = 1.5;
+  bool open_all_around = true;
   for (int turn = 0; turn < 64; ++turn) {
     const Vector3 at = place(widest, turn);
-    if (contains(at) && opens_below(at))
-      throw spot::InvalidContainer(
-          spot::message("the mouth of ", region, " is wider than ", orifice, ": it is open at (", at.x(), ", ", at.y(),
-                        ", ", at.z(), "), too, where no base holds the grains"));
+    open_all_around = open_all_around && contains(at) && opens_below(at);
   }
+  if (open_all_around)
+    throw spot::InvalidContainer(spot::message("the mouth of ", region, " is wider than ", orifice,
+                                               ": it has no base around the orifice, nowhere at a radius of ",
+                                               widest * radius));
 }
 
 }  // namespace LAMMPS_NS

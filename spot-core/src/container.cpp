@@ -119,8 +119,8 @@ WallContact BasePlate::nearest(const Vector3& centre) const {
 }
 
 Vector3 BasePlate::reflect_spot(double buffer, const Vector3& target) const {
-  const double height = std::max(0.0, target.z() - orifice_.centre.z());
-  if (height >= buffer) return target;
+  const double above = target.z() - orifice_.centre.z(), height = std::max(0.0, above);
+  if (above >= 0.0 && height >= buffer) return target;
   const double rim_clearance = std::sqrt(buffer * buffer - height * height);
   return orifice_.keep_within(std::max(0.0, orifice_.radius - rim_clearance), target);
 }
