@@ -17,9 +17,9 @@ class Region;
 /// neither is this.
 class RegionContainer : public spot::Container {
  public:
-  /// The region must outlive this. Throws spot::InvalidContainer, naming region and orifice, unless the orifice lies in an
-  /// opening of the region, beyond which there is a base, half a radius farther out, in some direction at least; and as
-  /// RegionParts does.
+  /// The region must outlive this. Throws spot::InvalidContainer, naming region and orifice, unless the orifice lies in
+  /// an opening of the region, beyond which there is a base, half a radius farther out, in some direction at least; and
+  /// as RegionParts does.
   RegionContainer(Region *region, Domain &domain, const spot::Orifice &orifice, const spot::SpotBuffers &buffers);
 
   bool contains(const spot::Vector3 &centre) const override;

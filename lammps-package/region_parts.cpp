@@ -40,11 +40,10 @@ void visit_faces(Region &shape, bool inside, const Vector3 &at, double reach, Vi
   for (int i = 0; i < n; ++i) visit(Vector3(shape.contact[i].delx, shape.contact[i].dely, shape.contact[i].delz));
 }
 
-/// Where a radius of a cone is 0, Region::surface_exterior finds nothing, or the opposite base from wherever one looks:
-/// the lowest and highest points along its axis seem to be at the same height.
-bool has_point(Region &cone) {
+/// Around the places of a cone that are nearest to some far away, along both ways of all axes; empty if it has none.
+Eigen::AlignedBox3d box_from_outside(Region &cone) {
   constexpr double far = 1e6;
-  Eigen::AlignedBox3d seen;
+  Eigen::AlignedBox3d box;
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-far, far}) {
       Vector3 from(1.0, 0.8, 0.6);  // on the axis of no cone
@@ -52,24 +51,32 @@ bool has_point(Region &cone) {
       bool found = false;
       visit_faces(cone, false, from, 4.0 * far, [&](const Vector3 &from_wall) {
         found = true;
-        seen.extend(from - from_wall);
+        box.extend(from - from_wall);
       });
-      if (!found) return true;
+      if (!found) return {};
     }
-  return !(seen.sizes().minCoeff() > 1e-8);
+  return box;
+}
+
+/// Where a radius of a cone is 0, Region::surface_exterior finds nothing, or the opposite base from wherever one looks,
+/// at one and the same height.
+bool has_point(Region &cone) {
+  const Eigen::AlignedBox3d box = box_from_outside(cone);
+  return box.isEmpty() || box.sizes().minCoeff() < 1e-8;
 }
 
 /// The flat ends of a cone along y are reported along z by Region::surface_interior: behind its surface a cone goes on.
 bool misplaces_ends(Region &cone) {
-  if (!cone.bboxflag) return false;
-  const double height = cone.extent_yhi - cone.extent_ylo;
+  Eigen::AlignedBox3d box(Vector3(cone.extent_xlo, cone.extent_ylo, cone.extent_zlo),
+                          Vector3(cone.extent_xhi, cone.extent_yhi, cone.extent_zhi));
+  if (!cone.bboxflag) box = box_from_outside(cone);
+  const double height = box.sizes().y();
   for (const double share : {1e-3, 1.0 - 1e-3}) {
-    const Vector3 at(0.5 * (cone.extent_xlo + cone.extent_xhi) + 1e-6 * height, cone.extent_ylo + share * height,
-                     0.5 * (cone.extent_zlo + cone.extent_zhi));
+    Vector3 at = box.center() + Vector3(1e-6 * height, 0.0, 0.0);
+    at.y() = box.min().y() + share * height;
     bool wrong = false;
-    visit_faces(cone, true, at, 2e-3 * height, [&](const Vector3 &from_wall) {
-      wrong = wrong || is_inside(cone, at - 1.01 * from_wall);
-    });
+    visit_faces(cone, true, at, 2e-3 * height,
+                [&](const Vector3 &from_wall) { wrong = wrong || is_inside(cone, at - 1.01 * from_wall); });
     if (wrong) return true;
   }
   return false;
@@ -79,8 +86,8 @@ bool misplaces_ends(Region &cone) {
 
 std::string way_to_write_mouth(const spot::Orifice &orifice) {
   const Vector3 &c = orifice.centre;
-  return spot::message("as the union of a closed shape and a pipe that leads out of it, 'region pipe cylinder z ", c.x(),
-                       ' ', c.y(), ' ', orifice.radius, ' ', c.z() - 2.0 * orifice.radius, ' ',
+  return spot::message("as the union of a closed shape and a pipe that leads out of it, 'region pipe cylinder z ",
+                       c.x(), ' ', c.y(), ' ', orifice.radius, ' ', c.z() - 2.0 * orifice.radius, ' ',
                        c.z() + 1e-3 * orifice.radius, "'");
 }
 
@@ -125,15 +132,16 @@ void RegionParts::require_known_surface(const Part &part, bool obstacle) const {
                                                "' is a cone with a point, whose surface LAMMPS does not find from "
                                                "outside: give its end a small radius instead of 0"));
   if (is_cone && !obstacle && misplaces_ends(*part.region))
-    throw spot::InvalidContainer(spot::message("region '", part.region->id,
-                                               "' is a cone along y, whose ends LAMMPS does not find: use one along x or "
-                                               "z, or open them"));
+    throw spot::InvalidContainer(
+        spot::message("region '", part.region->id,
+                      "' is a cone along y, whose ends LAMMPS does not find: use one along x or "
+                      "z, or open them"));
   for (const Part &inner : part.parts) require_known_surface(inner, obstacle);
 }
 
 /// The share of the path up to the place where it enters a convex shape, both of its ends being outside; above 1 if it
-/// does not. The plane through the nearest point of the shape, across the line to it, has all of the shape behind it, so
-/// one may go as far as that plane.
+/// does not. The plane through the nearest point of the shape, across the line to it, has all of the shape behind it,
+/// so one may go as far as that plane.
 double RegionParts::entrance(Region &shape, const Vector3 &from, const Vector3 &to) const {
   constexpr int rounds = 200;
   constexpr double never = 2.0;

@@ -19,8 +19,8 @@ std::string way_to_write_mouth(const spot::Orifice &orifice);
 /// The shapes that a region is made of, and which of them a straight path passes.
 ///
 /// The surface that LAMMPS reports of a union or intersection does not say how far one may go: where the nearest point
-/// of a part's face lies inside another part, the rest of the face is left out, too. But every shape that is no union or
-/// intersection is convex. So a straight path is inside each of them from one place to another, and it is inside the
+/// of a part's face lies inside another part, the rest of the face is left out, too. But every shape that is no union
+/// or intersection is convex. So a straight path is inside each of them from one place to another, and it is inside the
 /// region or not between any two such places.
 class RegionParts {
  public:
@@ -29,8 +29,8 @@ class RegionParts {
   /// surface is, since a cone with a point is seen from outside, or has its ends along y; and if a style is unknown.
   RegionParts(Region *region, Domain &domain, const spot::Orifice &orifice);
 
-  /// Where the path leaves the region, or where it begins if that is outside. There is no normal where it leaves through
-  /// an open face.
+  /// Where the path leaves the region, or where it begins if that is outside. There is no normal where it leaves
+  /// through an open face.
   std::optional<spot::WallOnPath> first_wall(const spot::Vector3 &from, const spot::Vector3 &to) const;
 
  private:

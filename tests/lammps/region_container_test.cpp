@@ -185,7 +185,8 @@ Shape any_shape(Draws& draws) {
 /// Where the test's regions open: far away, in a silo of its own below all else.
 const Orifice far_mouth{{100.0, 100.0, -30.0}, 4.0};
 
-/// Up to five random shapes in random unions and intersections of each other, within a block, and the silo with the mouth.
+/// Up to five random shapes in random unions and intersections of each other, within a block, and the silo with the
+/// mouth.
 struct RandomRegion {
   Regions regions;
   Margin inside;
@@ -236,7 +237,9 @@ struct RandomRegion {
       };
       add(message("group", k), command, margin, 0.1);
     }
-    inside = [within = made[0].inside](const Vector3& p) { return std::min(12.0 - p.cwiseAbs().maxCoeff(), within(p)); };
+    inside = [within = made[0].inside](const Vector3& p) {
+      return std::min(12.0 - p.cwiseAbs().maxCoeff(), within(p));
+    };
     regions.add("bound", "block -12 12 -12 12 -12 12");
     regions.add("within", "intersect 2 bound " + made[0].id);
     regions.add("far_silo", "block 90 110 90 110 -30 -20");
@@ -385,8 +388,9 @@ TEST(RegionContainerAnalytic, SpotsStayInsideShapesWithAnOpenBottom) {
        [](const Vector3& p) { return std::min(4.0 + 0.5 * p.z() - p.head<2>().norm(), 12.0 - p.z()); }},
       {"cylinder z 0 0 4.5 0 20 open 1",
        [](const Vector3& p) { return std::min(4.5 - p.head<2>().norm(), 20.0 - p.z()); }},
-      {"block -4 4 -4.4 4.4 0 20 open 5",
-       [](const Vector3& p) { return std::min({4.0 - std::abs(p.x()), 4.4 - std::abs(p.y()), 20.0 - p.z()}); }}};
+      {"block -4 4 -4.4 4.4 0 20 open 5", [](const Vector3& p) {
+         return std::min({4.0 - std::abs(p.x()), 4.4 - std::abs(p.y()), 20.0 - p.z()});
+       }}};
   for (const Case& c : cases) {
     Regions regions;
     regions.add("silo", c.words);
@@ -438,14 +442,22 @@ TEST(RegionContainerUnit, ConesThatLammpsGetsWrongAreNamed) {
   regions.add("tip_below", "cone z 0 0 0 5 10 20");
   regions.add("outside", "union 2 tip_below tip_below side out");
   regions.add("blunt", "cone z 0 0 5 1e-3 10 20 side out");
-  for (const char* tip : {"tip", "outside", "blunt"}) regions.add(message("with_", tip), message("intersect 2 silo ", tip));
+  for (const char* tip : {"tip", "outside", "blunt"})
+    regions.add(message("with_", tip), message("intersect 2 silo ", tip));
   const Orifice orifice{{0.0, 0.0, 0.0}, 4.0};
   EXPECT_THAT(regions.error("with_tip", orifice), AllOf(HasSubstr("'tip'"), HasSubstr("a cone with a point")));
-  EXPECT_THAT(regions.error("with_outside", orifice), AllOf(HasSubstr("'tip_below'"), HasSubstr("a cone with a point")));
+  EXPECT_THAT(regions.error("with_outside", orifice),
+              AllOf(HasSubstr("'tip_below'"), HasSubstr("a cone with a point")));
   EXPECT_EQ(regions.error("with_blunt", orifice), "no error");
   regions.add("trough", "cone y 0 5 5 4 -9 9");
   regions.add("with_trough", "union 2 silo trough");
   EXPECT_THAT(regions.error("with_trough", orifice), AllOf(HasSubstr("'trough'"), HasSubstr("a cone along y")));
+  regions.add("ridge", "cone y 0 5 5 4 -9 9 side out");
+  regions.add("hollow", "union 2 ridge ridge side out");
+  regions.add("with_hollow", "union 2 silo hollow");
+  regions.add("with_ridge", "intersect 2 silo ridge");
+  EXPECT_THAT(regions.error("with_hollow", orifice), AllOf(HasSubstr("'ridge'"), HasSubstr("a cone along y")));
+  EXPECT_EQ(regions.error("with_ridge", {{0.0, 0.0, 0.0}, 4.0}).find("a cone along y"), std::string::npos);
 }
 
 /// Of a silo with a flat floor at z = 0, a hole of radius 4 in it, and things in the way.
@@ -505,9 +517,11 @@ TEST(RegionContainerUnit, AWallAtDistanceZeroCounts) {
     container.contacts(at, 0.5, contacts);
     ASSERT_EQ(contacts.end() - contacts.begin(), static_cast<std::ptrdiff_t>(normals.size())) << at.transpose();
     for (const Vector3& normal : normals)
-      EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), [&](const spot::WallContact& contact) {
-        return (contact.normal - normal).norm() < 1e-5 && contact.distance < 1e-5;
-      })) << at.transpose() << ": " << normal.transpose();
+      EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(),
+                              [&](const spot::WallContact& contact) {
+                                return (contact.normal - normal).norm() < 1e-5 && contact.distance < 1e-5;
+                              }))
+          << at.transpose() << ": " << normal.transpose();
   };
   expect(box, {4.4, 0.0, 5.0}, {{-1.0, 0.0, 0.0}});
   expect(box, {0.0, -4.0, 5.0}, {{0.0, 1.0, 0.0}});

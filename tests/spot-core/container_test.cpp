@@ -25,8 +25,8 @@ using spot::SpotBuffers;
 using spot::Vector3;
 using spot::WallContact;
 using spot::WallContacts;
-using spot::WallOnPath;
 using spot::WalledContainer;
+using spot::WallOnPath;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -183,8 +183,8 @@ TEST(ContainerAnalytic, SpotsStayInsideANarrowGap) {
   }
 }
 
-/// The first of many places along a path that is behind a wall: at a height from that of the orifice upwards, or where it
-/// passes that height beside the orifice.
+/// The first of many places along a path that is behind a wall: at a height from that of the orifice upwards, or where
+/// it passes that height beside the orifice.
 double share_before_wall(const Vector3& from, const Vector3& to, const Orifice& hole, bool (*inside)(const Vector3&)) {
   constexpr int places = 20000;
   bool was_above = from.z() >= hole.centre.z();

@@ -114,8 +114,8 @@ class Wall {
   /// Reflection keeps spots that walk along a plane wall uniformly distributed in front of it.
   virtual Vector3 reflect_spot(double buffer, const Vector3& target) const;
 
-  /// Where the straight path from the inner side passes this wall. A path that begins behind it meets it at once, unless
-  /// it ends on the inner side.
+  /// Where the straight path from the inner side passes this wall. A path that begins behind it meets it at once,
+  /// unless it ends on the inner side.
   virtual std::optional<WallOnPath> meet(const Vector3& from, const Vector3& to) const = 0;
 
   /// As of Container.
@@ -181,7 +181,8 @@ class WalledContainer : public Container {
   const std::vector<AxisPlane>& axis_planes() const override { return axis_planes_; }
   void other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
   const Orifice& orifice() const override { return orifice_; }
-  bool may_have_left_to(const Vector3& centre) const override;  std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const override;
+  bool may_have_left_to(const Vector3& centre) const override;
+  std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const override;
 
  private:
   std::optional<Vector3> reflect_spot(const Vector3& start, const Vector3& target) const override;

@@ -103,11 +103,12 @@ class Drainage {
   Drainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
            std::shared_ptr<const Container> container, double diameter);
 
-  /// Throws InvalidPacking, naming the grains, if one is outside the container, or overlaps a wall or another too deeply.
+  /// Throws InvalidPacking, naming the grains, if one is outside the container, or overlaps a wall or another too
+  /// deeply.
   void require_valid_start();
 
-  /// Throws InvalidPacking, naming the grain that may move which overlaps a wall most, if that is more than is allowed at
-  /// the start.
+  /// Throws InvalidPacking, naming the grain that may move which overlaps a wall most, if that is more than is allowed
+  /// at the start.
   void require_off_walls() const;
 
   /// Puts `fresh` in the place of the driver's packing; throws InvalidPacking, and leaves everything as it was, if a
