@@ -371,7 +371,7 @@ void FixSpot::make_container() {
     if (!region) throw spot::InvalidContainer(message("region '", name, "' does not exist"));
     if (region->varshape || region->dynamic_check())
       throw spot::InvalidContainer(message("region '", name, "' moves or changes shape, which is not supported"));
-    model->container = std::make_shared<RegionContainer>(region, *command.orifice, buffers);
+    model->container = std::make_shared<RegionContainer>(region, *domain, *command.orifice, buffers);
   }
 }
 

@@ -29,6 +29,18 @@ Vector3 Orifice::keep_within(double limit, const Vector3& position) const {
   return {centre.x() + scale * dx, centre.y() + scale * dy, position.z()};
 }
 
+std::optional<double> Orifice::passed_at(const Vector3& from, const Vector3& to) const {
+  const double before = from.z() - centre.z(), after = to.z() - centre.z();
+  if ((before >= 0.0) == (after >= 0.0)) return std::nullopt;
+  return before / (before - after);
+}
+
+Vector3 Container::keep_spot_inside(const Vector3& start, const Vector3& target) const {
+  if (const auto end = reflect_spot(start, target)) return *end;
+  const Vector3 upwards(start.x(), start.y(), target.z());
+  return first_wall(start, upwards) ? start : upwards;
+}
+
 const std::vector<AxisPlane>& Container::axis_planes() const {
   static const std::vector<AxisPlane> none;
   return none;
@@ -56,6 +68,12 @@ PlaneWall::PlaneWall(const Vector3& point, const Vector3& normal) {
 
 WallContact PlaneWall::nearest(const Vector3& centre) const { return {normal_.dot(centre) - offset_, normal_}; }
 
+std::optional<WallOnPath> PlaneWall::meet(const Vector3& from, const Vector3& to) const {
+  const double before = normal_.dot(from) - offset_, after = normal_.dot(to) - offset_;
+  if (after >= 0.0) return std::nullopt;
+  return WallOnPath{before > 0.0 ? before / (before - after) : 0.0, normal_};
+}
+
 std::optional<AxisPlane> PlaneWall::axis_plane() const {
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(normal_[axis]) == 1.0) return AxisPlane{axis, offset_ * normal_[axis], normal_[axis] < 0.0};
@@ -75,6 +93,17 @@ WallContact CylinderWall::nearest(const Vector3& centre) const {
   return {radius_ - distance, {-dx / distance, -dy / distance, 0.0}};
 }
 
+std::optional<WallOnPath> CylinderWall::meet(const Vector3& from, const Vector3& to) const {
+  if (nearest(to).distance >= 0.0) return std::nullopt;
+  if (nearest(from).distance <= 0.0) return WallOnPath{0.0, nearest(from).normal};
+  // The share s of the path at which |start + s along| is the radius: the larger root of a s^2 + 2 b s - c.
+  const Eigen::Vector2d start(from.x() - x_, from.y() - y_), along = (to - from).head<2>();
+  const double a = along.squaredNorm(), b = start.dot(along), c = radius_ * radius_ - start.squaredNorm();
+  const double root = std::sqrt(b * b + a * c);
+  const double share = std::min(1.0, b > 0.0 ? c / (b + root) : (root - b) / a);
+  return WallOnPath{share, nearest(from + share * (to - from)).normal};
+}
+
 BasePlate::BasePlate(const Orifice& orifice) : orifice_(orifice) {}
 
 WallContact BasePlate::nearest(const Vector3& centre) const {
@@ -90,10 +119,18 @@ WallContact BasePlate::nearest(const Vector3& centre) const {
 }
 
 Vector3 BasePlate::reflect_spot(double buffer, const Vector3& target) const {
-  const double height = std::max(0.0, target.z() - orifice_.centre.z());
-  if (height >= buffer) return target;
+  const double above = target.z() - orifice_.centre.z(), height = std::max(0.0, above);
+  if (above >= 0.0 && height >= buffer) return target;
   const double rim_clearance = std::sqrt(buffer * buffer - height * height);
   return orifice_.keep_within(std::max(0.0, orifice_.radius - rim_clearance), target);
+}
+
+std::optional<WallOnPath> BasePlate::meet(const Vector3& from, const Vector3& to) const {
+  const auto share = orifice_.passed_at(from, to);
+  if (!share) return std::nullopt;
+  const Vector3 passed = from + *share * (to - from) - orifice_.centre;
+  if (length(passed.x(), passed.y()) <= orifice_.radius) return std::nullopt;
+  return WallOnPath{*share, {0.0, 0.0, from.z() < orifice_.centre.z() ? -1.0 : 1.0}};
 }
 
 bool BasePlate::may_have_left_to(const Vector3& centre) const {
@@ -140,17 +177,34 @@ void WalledContainer::other_contacts(const Vector3& centre, double reach, WallCo
   }
 }
 
-Vector3 WalledContainer::keep_spot_inside(const Vector3& start, const Vector3& target) const {
+std::optional<WallOnPath> WalledContainer::first_wall(const Vector3& from, const Vector3& to) const {
+  const bool rises = from.z() < orifice_.centre.z();
+  const auto passed = orifice_.passed_at(from, to);
+  if (rises && !passed) return std::nullopt;
+  const double begin = rises ? *passed : 0.0, end = passed && !rises ? *passed : 1.0;
+  std::optional<WallOnPath> first;
+  for (const Bounded& b : walls_) {
+    auto wall = b.wall->meet(from, to);
+    // Planes go on below the orifice, where they are no walls.
+    if (wall && wall->share < begin && (wall = b.wall->meet(from + begin * (to - from), to)))
+      wall->share = begin + wall->share * (1.0 - begin);
+    if (wall && wall->share <= end && (!first || wall->share < first->share)) first = wall;
+  }
+  return first;
+}
+
+std::optional<Vector3> WalledContainer::reflect_spot(const Vector3& start, const Vector3& target) const {
   // A reflection can lead into the next wall's buffer; in a corner or a narrow gap a few rounds settle it.
   constexpr int rounds = 8;
   Vector3 position = target;
   for (int round = 0; round < rounds; ++round) {
     const Vector3 before = position;
     for (const Bounded& b : walls_) position = b.wall->reflect_spot(b.spot_buffer, position);
-    if (position == before) return position;
+    if (position != before) continue;
+    if (first_wall(start, position)) break;
+    return position;
   }
-  // Too narrow to step sideways.
-  return {start.x(), start.y(), target.z()};
+  return std::nullopt;
 }
 
 namespace {

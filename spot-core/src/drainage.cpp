@@ -113,8 +113,10 @@ void Drainage::require_inside() const {
 }
 
 void Drainage::change_grains(const GrainChanges& changes) {
-  for (const Grain& grain : changes.come)
+  for (const Grain& grain : changes.come) {
     require_inside(grain, limits_.outlet, container_->orifice().radius + diameter_);
+    require_off_walls({depth_in_walls(grain), grain.id, grain.id}, "when it is put in");
+  }
   require_shallow(carry_out(changes), "when they are put in");
 }
 
@@ -151,6 +153,24 @@ void Drainage::require_left_through_orifice(std::size_t first) const {
   }
 }
 
+/// How deep a grain overlaps a wall, in diameters, or 0. Held grains may be part of the walls, and there are none below
+/// the orifice.
+double Drainage::depth_in_walls(const Grain& grain) const {
+  const double reach = 0.5 * diameter_;
+  if (grain.held || grain.position.z() < container_->orifice().centre.z()) return 0.0;
+  WallContacts contacts;
+  container_->contacts(grain.position, reach, contacts);
+  double deepest = 0.0;
+  for (const WallContact& contact : contacts) deepest = std::max(deepest, 0.5 - contact.distance / diameter_);
+  return deepest;
+}
+
+void Drainage::require_off_walls(const Overlap& deepest, const char* when) const {
+  if (deepest.depth > limits_.largest_overlap)
+    throw InvalidPacking(message("grain ", deepest.first, " overlaps a wall by ", deepest.depth, " diameters ", when,
+                                 "; at most ", limits_.largest_overlap, " is allowed"));
+}
+
 void Drainage::require_shallow(const Overlap& overlap, const char* when) const {
   if (overlap.depth > limits_.largest_overlap)
     throw InvalidPacking(message("grains ", overlap.first, " and ", overlap.second, " overlap by ", overlap.depth,
@@ -158,8 +178,14 @@ void Drainage::require_shallow(const Overlap& overlap, const char* when) const {
 }
 
 void Drainage::require_valid_start() {
-  visit_grains(
-      [&](const Grain& grain) { require_inside(grain, limits_.outlet, container_->orifice().radius + diameter_); });
+  Overlap in_wall;  // of the grain with the lowest id among the deepest
+  visit_grains([&](const Grain& grain) {
+    require_inside(grain, limits_.outlet, container_->orifice().radius + diameter_);
+    const double depth = depth_in_walls(grain);
+    if (depth > in_wall.depth || (depth == in_wall.depth && grain.id < in_wall.first))
+      in_wall = {depth, grain.id, grain.id};
+  });
+  require_off_walls(in_wall, "at the start");
   require_shallow(largest_overlap(), "at the start");
 }
 

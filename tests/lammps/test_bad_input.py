@@ -122,7 +122,7 @@ def test_region_that_moves(tmp_path):
 
 def test_region_without_the_orifice(tmp_path):
     has(error_of(deck(fix(walls="region silo"), before="region silo block -5 5 -4 4 1 19 open 5"), tmp_path),
-        "the orifice at (0, 0, ", "outside region silo")
+        "the orifice of radius 3 at (0, 0, 0)", "outside region 'silo'")
 
 
 def test_grain_outside_a_region_with_an_open_face(tmp_path):

@@ -26,6 +26,7 @@ using spot::Vector3;
 using spot::WallContact;
 using spot::WallContacts;
 using spot::WalledContainer;
+using spot::WallOnPath;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -182,6 +183,87 @@ TEST(ContainerAnalytic, SpotsStayInsideANarrowGap) {
   }
 }
 
+/// The first of many places along a path that is behind a wall: at a height from that of the orifice upwards, or where
+/// it passes that height beside the orifice.
+double share_before_wall(const Vector3& from, const Vector3& to, const Orifice& hole, bool (*inside)(const Vector3&)) {
+  constexpr int places = 20000;
+  bool was_above = from.z() >= hole.centre.z();
+  for (int k = 1; k <= places; ++k) {
+    const Vector3 at = from + (static_cast<double>(k) / places) * (to - from);
+    const bool above = at.z() >= hole.centre.z();
+    if (above != was_above && (at - hole.centre).head<2>().norm() > hole.radius) return (k - 0.5) / places;
+    if (above && !inside(at)) return (k - 0.5) / places;
+    was_above = above;
+  }
+  return infinity;
+}
+
+TEST(ContainerBruteForce, FirstWallIsWhereAPathPassesOne) {
+  struct Case {
+    std::unique_ptr<WalledContainer> silo;
+    bool (*inside)(const Vector3&);
+  };
+  std::vector<Case> cases;
+  cases.push_back({box_silo(-8.0, 8.0, -4.0, 4.0, orifice, buffers),
+                   [](const Vector3& p) { return std::abs(p.x()) <= 8.0 && std::abs(p.y()) <= 4.0; }});
+  cases.push_back({cylinder_silo(1.0, 0.5, 7.0, orifice, buffers),
+                   [](const Vector3& p) { return std::hypot(p.x() - 1.0, p.y() - 0.5) <= 7.0; }});
+  scenes::Draws draws(11);
+  for (const Case& c : cases) {
+    int walls = 0, free = 0;
+    for (int k = 0; k < 1500; ++k) {
+      const Vector3 from = draws.in_box({-8.0, -4.0, -3.0}, {8.0, 4.0, 9.0});
+      const Vector3 to = draws.in_box({-12.0, -8.0, -3.0}, {12.0, 8.0, 9.0});
+      if (from.z() >= 0.0 && !c.inside(from)) continue;
+      const double share = share_before_wall(from, to, orifice, c.inside);
+      const auto wall = c.silo->first_wall(from, to);
+      ASSERT_EQ(wall.has_value(), share < 1.0) << from.transpose() << " to " << to.transpose();
+      (wall ? walls : free) += 1;
+      if (!wall) continue;
+      EXPECT_NEAR(wall->share, share, 1e-4) << from.transpose() << " to " << to.transpose();
+      EXPECT_NEAR(wall->normal.norm(), 1.0, 1e-12);
+      EXPECT_LT(wall->normal.dot(to - from), 0.0);
+    }
+    EXPECT_GT(walls, 200);
+    EXPECT_GT(free, 200);
+  }
+}
+
+/// A thin plate across the silo, from which spots are not reflected.
+class Shelf : public BasePlate {
+ public:
+  using BasePlate::BasePlate;
+  Vector3 reflect_spot(double, const Vector3& target) const override { return target; }
+};
+
+/// No step leads through the shelf or the base, and a spot under the shelf stays there.
+TEST(ContainerAnalytic, SpotsNeverPassAWall) {
+  WalledContainer silo(orifice);
+  silo.add(std::make_unique<BasePlate>(orifice), 0.0);
+  silo.add(std::make_unique<Shelf>(Orifice{{0.0, 0.0, 8.0}, 1.0}), 0.0);
+  silo.add(std::make_unique<CylinderWall>(0.0, 0.0, 6.0), 0.25);
+  scenes::Draws draws(12);
+  int passed = 0, held = 0;
+  for (int spot = 0; spot < 500; ++spot) {
+    Vector3 at = draws.in_box({-1.0, -1.0, -3.0}, {1.0, 1.0, -2.0});
+    for (int step = 0; step < 60; ++step) {
+      Vector3 target = at + Vector3(0.0, 0.0, 0.7);
+      target[draws.below(2) == 0 ? 0 : 1] += draws.below(2) == 0 ? 1.7 : -1.7;
+      const Vector3 next = silo.keep_spot_inside(at, target);
+      for (const Orifice& hole : {orifice, Orifice{{0.0, 0.0, 8.0}, 1.0}}) {
+        if ((at.z() < hole.centre.z()) == (next.z() < hole.centre.z())) continue;
+        const double share = (hole.centre.z() - at.z()) / (next.z() - at.z());
+        EXPECT_LE((at + share * (next - at)).head<2>().norm(), hole.radius + 1e-9);
+        passed += hole.centre.z() > 0.0;
+      }
+      held += next == at;
+      at = next;
+    }
+  }
+  EXPECT_GT(passed, 5) << "through the hole of the shelf";
+  EXPECT_GT(held, 1000) << "under it";
+}
+
 TEST(ContainerUnit, ContainsIsTheInnerSideOfEveryWall) {
   const auto silo = box_silo(-8.0, 8.0, -4.0, 4.0, orifice, buffers);
   EXPECT_TRUE(silo->contains({7.9, -3.9, 0.1}));
@@ -262,7 +344,10 @@ TEST(ContainerUnit, ContainersHaveNoAxisPlanesUnlessTheySaySo) {
       contacts.add({centre.z(), {0.0, 0.0, 1.0}});
     }
     const Orifice& orifice() const override { return ::orifice; }
-    Vector3 keep_spot_inside(const Vector3&, const Vector3& target) const override { return target; }
+    std::optional<WallOnPath> first_wall(const Vector3&, const Vector3&) const override { return std::nullopt; }
+
+   private:
+    std::optional<Vector3> reflect_spot(const Vector3&, const Vector3& target) const override { return target; }
   } bowl;
   EXPECT_TRUE(bowl.axis_planes().empty());
   EXPECT_TRUE(bowl.concurrent());

@@ -599,6 +599,22 @@ TEST(DrainageUnit, HowDeepOverlapsMayBeInFlowIsSettable) {
   EXPECT_THROW(start(0.41, 0.0), InvalidParameter);
 }
 
+TEST(DrainageUnit, GrainsThatOverlapAWallAtTheStartAreNamed) {
+  const auto start = [](const Vector3& place, double at_start, bool held = false) {
+    return TimeOrderedDrainage(scenes::paper_spots(), RelaxationParameters(), DrainageLimits{-1.0, at_start},
+                               scenes::small_silo(6.0, 4.0), Packing(1.0, 100.0, {{1, {0, 0, 2}}, {7, place, held}}));
+  };
+  const auto says = [](const char* depth) {
+    return AllOf(HasSubstr(spot::message("grain 7 overlaps a wall by ", depth)), HasSubstr("at most 0.03"));
+  };
+  EXPECT_THAT(scenes::text_of<InvalidPacking>([&] { start({5.625, 0.0, 3.0}, 0.03); }), says("0.125"));
+  EXPECT_THAT(scenes::text_of<InvalidPacking>([&] { start({6.0, 0.0, 3.0}, 0.03); }), says("0.5"));
+  EXPECT_THAT(scenes::text_of<InvalidPacking>([&] { start({5.0, 3.0, 0.25}, 0.03); }), says("0.25"));
+  EXPECT_NO_THROW(start({5.52, 0.0, 3.0}, 0.03));
+  EXPECT_NO_THROW(start({5.625, 0.0, 3.0}, 0.13));
+  EXPECT_NO_THROW(start({5.625, 0.0, 3.0}, 0.03, true)) << "held grains may be part of the wall";
+}
+
 TEST(DrainageUnit, GrainsOutsideAreNamed) {
   for (const Vector3& outside : {Vector3(6.1, 0, 3), Vector3(0, -4.2, 3), Vector3(5.1, 0, -0.1), Vector3(0, 0, -1.1)})
     EXPECT_THAT(scenes::text_of<InvalidPacking>([&] {

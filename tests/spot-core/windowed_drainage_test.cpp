@@ -235,11 +235,15 @@ class OneAtATime : public spot::Container {
   }
   bool concurrent() const override { return false; }
   const spot::Orifice& orifice() const override { return walls_->orifice(); }
-  spot::Vector3 keep_spot_inside(const spot::Vector3& start, const spot::Vector3& target) const override {
-    return walls_->keep_spot_inside(start, target);
+  std::optional<spot::WallOnPath> first_wall(const spot::Vector3& from, const spot::Vector3& to) const override {
+    return walls_->first_wall(from, to);
   }
 
  private:
+  std::optional<spot::Vector3> reflect_spot(const spot::Vector3& start, const spot::Vector3& target) const override {
+    return walls_->keep_spot_inside(start, target);
+  }
+
   std::shared_ptr<const spot::Container> walls_ = scenes::small_silo(6.0, 4.0);
   std::thread::id owner_ = std::this_thread::get_id();
 };

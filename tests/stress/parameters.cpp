@@ -138,9 +138,9 @@ void add_packings(std::vector<Case>& cases) {
       {"20 grains at one place", "overlap 1.5", scene_of(std::vector<spot::Vector3>(20, {0, 0, 2.0}), 1.5)});
   cases.push_back(
       {"300 grains at one place", "overlap 1.5", scene_of(std::vector<spot::Vector3>(300, {0, 0, 2.0}), 1.5)});
-  cases.push_back({"centres on walls", "side", scene_of({{6, 0, 1}, {-6, 1, 2}, {0, 4, 1}, {1, -4, 1}})});
-  cases.push_back({"centres on walls", "corners", scene_of({{6, 4, 0}, {-6, 4, 0}, {6, -4, 3}, {-6, -4, 0}})});
-  cases.push_back({"centres on walls", "base and rim", scene_of({{5, 0, 0}, {4, 0, 0}, {0, 3.9, 0}, {0, -4, 0}})});
+  cases.push_back({"centres on walls", "side", scene_of({{6, 0, 1}, {-6, 1, 2}, {0, 4, 1}, {1, -4, 1}}, 0.6)});
+  cases.push_back({"centres on walls", "corners", scene_of({{6, 4, 0}, {-6, 4, 0}, {6, -4, 3}, {-6, -4, 0}}, 0.6)});
+  cases.push_back({"centres on walls", "base and rim", scene_of({{5, 0, 0}, {4, 0, 0}, {0, 3.9, 0}, {0, -4, 0}}, 0.6)});
   cases.push_back({"centres behind walls", "by 1e-9", scene_of({{6.000000001, 0, 1}})});
   for (const double width : {0.9, 1.0, 1.001, 1.2, 1.9})
     cases.push_back({"gap / d, R_s its half", spot::message(width), gap(width, 0.45)});

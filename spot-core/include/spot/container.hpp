@@ -48,6 +48,15 @@ struct Orifice {
 
   /// `position` with its distance from the axis reflected to stay within `limit`, its height kept.
   Vector3 keep_within(double limit, const Vector3& position) const;
+
+  /// The share of a straight path that lies before it passes the height of the orifice, if it does.
+  std::optional<double> passed_at(const Vector3& from, const Vector3& to) const;
+};
+
+/// Where a straight path meets a wall.
+struct WallOnPath {
+  double share;    ///< of the path that lies before the wall, 0 to 1
+  Vector3 normal;  ///< a unit vector from the wall to the side that the path comes from; zero where the wall has none
 };
 
 /// What holds the grains: walls near a point, the orifice, and where spots may go. z points up.
@@ -77,11 +86,20 @@ class Container {
   /// May a grain that is here now, below the orifice, have come out of it? Else it went through a wall.
   virtual bool may_have_left_to(const Vector3&) const { return true; }
 
-  /// Where a spot at `start` that wants to step to `target` ends: at least its buffer away from every wall.
-  virtual Vector3 keep_spot_inside(const Vector3& start, const Vector3& target) const = 0;
+  /// The first wall on the straight path between two places. Below the height of the orifice there are none.
+  virtual std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const = 0;
+
+  /// Where a spot at `start` that wants to step to `target` ends. The step is straight, and no wall lies across it:
+  /// it is reflected at walls, to end at least the spot's buffer away from each; where it is too narrow for that, only
+  /// its upward part is taken, and no step at all where that would meet a wall.
+  Vector3 keep_spot_inside(const Vector3& start, const Vector3& target) const;
 
   /// A message for every spot, thrown as InvalidContainer, if spots of this radius cannot enter.
   void require_entrance(double spot_radius) const;
+
+ private:
+  /// `target`, reflected until the spot fits there and no wall lies across the step from `start`; or nothing.
+  virtual std::optional<Vector3> reflect_spot(const Vector3& start, const Vector3& target) const = 0;
 };
 
 /// One shape of wall. New shapes are new classes; the rest of spot-core does not change.
@@ -96,6 +114,10 @@ class Wall {
   /// Reflection keeps spots that walk along a plane wall uniformly distributed in front of it.
   virtual Vector3 reflect_spot(double buffer, const Vector3& target) const;
 
+  /// Where the straight path from the inner side passes this wall. A path that begins behind it meets it at once,
+  /// unless it ends on the inner side.
+  virtual std::optional<WallOnPath> meet(const Vector3& from, const Vector3& to) const = 0;
+
   /// As of Container.
   virtual bool may_have_left_to(const Vector3&) const { return true; }
 
@@ -109,6 +131,7 @@ class PlaneWall : public Wall {
   /// Throws InvalidContainer if the normal is zero or not finite.
   PlaneWall(const Vector3& point, const Vector3& normal);
   WallContact nearest(const Vector3& centre) const override;
+  std::optional<WallOnPath> meet(const Vector3& from, const Vector3& to) const override;
   std::optional<AxisPlane> axis_plane() const override;
 
  private:
@@ -122,6 +145,7 @@ class CylinderWall : public Wall {
   /// Throws InvalidContainer unless the radius is positive.
   CylinderWall(double x, double y, double radius);
   WallContact nearest(const Vector3& centre) const override;
+  std::optional<WallOnPath> meet(const Vector3& from, const Vector3& to) const override;
 
  private:
   double x_, y_, radius_;
@@ -135,6 +159,8 @@ class BasePlate : public Wall {
   WallContact nearest(const Vector3& centre) const override;
   /// Reflects towards the axis at constant height, so that a spot on its way up through the hole is not held back.
   Vector3 reflect_spot(double buffer, const Vector3& target) const override;
+  /// From either side.
+  std::optional<WallOnPath> meet(const Vector3& from, const Vector3& to) const override;
   /// Below the hole grains spread no farther than they have come down.
   bool may_have_left_to(const Vector3& centre) const override;
 
@@ -156,9 +182,11 @@ class WalledContainer : public Container {
   void other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
   const Orifice& orifice() const override { return orifice_; }
   bool may_have_left_to(const Vector3& centre) const override;
-  Vector3 keep_spot_inside(const Vector3& start, const Vector3& target) const override;
+  std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const override;
 
  private:
+  std::optional<Vector3> reflect_spot(const Vector3& start, const Vector3& target) const override;
+
   struct Bounded {
     std::unique_ptr<Wall> wall;
     double spot_buffer;

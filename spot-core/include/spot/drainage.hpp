@@ -114,7 +114,8 @@ class Drainage {
   Drainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
            std::shared_ptr<const Container> container, double diameter);
 
-  /// Throws InvalidPacking, naming the grains, if one is outside the container or two overlap too deeply.
+  /// Throws InvalidPacking, naming the grains, if one is outside the container, or overlaps a wall or another too
+  /// deeply.
   void require_valid_start();
 
   /// Carries out what change_grains() has checked; returns the largest overlap of a grain that came, as it came.
@@ -143,6 +144,8 @@ class Drainage {
 
  private:
   void require_inside(const Grain& grain, double lowest, double reach) const;
+  double depth_in_walls(const Grain& grain) const;
+  void require_off_walls(const Overlap& deepest, const char* when) const;
   void require_shallow(const Overlap& largest, const char* when) const;
 };
 
