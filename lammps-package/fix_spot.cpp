@@ -581,10 +581,9 @@ void FixSpot::pre_exchange() {
 }
 
 void FixSpot::end_of_step() {
-  // fix balance has rounded positions when it looked at them in units of the box.
-  if (comm->nprocs > 1)
-    for (int i = 0; i < atom->nlocal; ++i)
-      for (int axis = 0; axis < 3; ++axis) atom->x[i][axis] = model->drainage->quantum().snap(atom->x[i][axis]);
+  // fix balance has rounded positions when it looked at them in units of the box, and new grains come with any.
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int axis = 0; axis < 3; ++axis) atom->x[i][axis] = model->drainage->quantum().snap(atom->x[i][axis]);
   list_spots();
 }
 
