@@ -27,9 +27,9 @@ template <typename Parcel>
 std::vector<Parcel> deliver(const std::vector<Parcel> &parcels, const std::vector<std::int64_t> &held,
                             spot::Communicator &communicator);
 
-/// What has to be done to the grains of `packing`, each on one rank, for them to be those of `lammps`, each on one rank,
-/// too, and perhaps another; positions are compared to the last bit. Collective; every rank gets its own part of the
-/// changes. Throws spot::InvalidPacking that names a grain which LAMMPS has twice.
+/// What has to be done to the grains of `packing`, each on one rank, for them to be those of `lammps`, each on one
+/// rank, too, and perhaps another; positions are compared to the last bit. Collective; every rank gets its own part of
+/// the changes. Throws spot::InvalidPacking that names a grain which LAMMPS has twice.
 spot::GrainChanges find_changes(const std::vector<spot::Grain> &packing, const std::vector<spot::Grain> &lammps,
                                 spot::Communicator &communicator);
 

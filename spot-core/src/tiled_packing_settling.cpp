@@ -238,7 +238,7 @@ void TiledPacking::part_from_bearers(std::uint32_t at, Point& step, double in_co
   }
 }
 
-/// What becomes of a falling grain; adds to its push what it falls or rolls by.
+/// What becomes of a falling grain; adds to its step what it falls or rolls by.
 std::int32_t TiledPacking::next_state(std::uint32_t at, Point& step, const Settling& settling,
                                       const Container& container) const {
   if (settling.last) return Point::laid;
@@ -297,8 +297,8 @@ void TiledPacking::move_falling(std::uint32_t at, const Point& by, std::int32_t 
   point = {add(point.x, by.x), add(point.y, by.y), add(point.z, by.z), state};
   Point& last = momenta_[at];
   const double down = -by.z * quantum_.length() / diameter_;
-  const bool creeps = std::abs(down)<creeping * roll, falls = down> 2.0 * roll;
-  last = {by.x, by.y, by.z, falls ? 0 : last.state + (creeps ? patience_with_rolls : 1)};
+  const int waited = std::abs(down) < creeping * roll ? patience_with_rolls : 1;
+  last = {by.x, by.y, by.z, down > 2.0 * roll ? 0 : last.state + waited};
   if (state == Point::laid) last = {0, 0, 0, 0};
   std::int32_t& path = path_[at / capacity_];
   path = static_cast<std::int32_t>(std::min<std::int64_t>(static_cast<std::int64_t>(path) + length_of(by), 1 << 30));
@@ -321,7 +321,8 @@ void TiledPacking::press_together(double in_contact, const Container& container,
   update_falling(container, workers);
 }
 
-/// Each rank finds its own neighbours of all that has come down, here and on the ranks below and above.
+/// Each rank finds its own neighbours of all that has come down, here and on the ranks below and above. Those that are
+/// on their way out go on.
 void TiledPacking::take_along_neighbours(const Container& container) {
   const double reach = square((1.0 + reach_of_pressing) * diameter_ / quantum_.length());
   std::vector<std::uint32_t> found;
@@ -329,7 +330,8 @@ void TiledPacking::take_along_neighbours(const Container& container) {
     const std::uint32_t* list = list_of(at);
     for (std::uint32_t k = 0; k < list_size_[at]; ++k)
       if (owned(list[k] / capacity_) && points_[list[k]].state == Point::free &&
-          squared_distance(points_[at], points_[list[k]]) <= reach)
+          squared_distance(points_[at], points_[list[k]]) <= reach &&
+          !stands_on_orifice(position(list[k]), 0.5, container))
         found.push_back(list[k]);
   };
   for (const Place& place : falling_) find(slot(place));
@@ -345,7 +347,8 @@ void TiledPacking::take_along_neighbours(const Container& container) {
 
 /// How deep a grain has sunk into the orifice, which is a floor until spots come, in diameters.
 double TiledPacking::depth_in_orifice(const Vector3& at, const Container& container) const {
-  return stands_on_orifice(at, 0.5, container) ? 0.5 - (at.z() - container.orifice().centre.z()) / diameter_ : 0.0;
+  const double height = (at.z() - container.orifice().centre.z()) / diameter_;
+  return height >= 0.0 && stands_on_orifice(at, 0.5, container) ? 0.5 - height : 0.0;
 }
 
 void TiledPacking::set_state(std::uint32_t at, std::int32_t state) {
