@@ -308,7 +308,7 @@ void TiledPacking::find_larger_overlap(std::uint32_t slot, double& least, Overla
 
 std::size_t TiledPacking::memory() const {
   std::size_t bytes = bytes_in(points_, references_, momenta_, ids_, near_wall_, cell_near_wall_, lists_, list_size_,
-                               marks_, account_, path_, work_, loosened_, falling_, middles_, steps_, shares_,
+                               marks_, account_, path_, work_, loosened_, falling_, laid_, middles_, steps_, shares_,
                                received_, wandered_cells_, due_cells_, wandered_, findings_, parts_, cells_reached_);
   for (const Part& part : parts_) bytes += bytes_in(part.rows, part.end_of_rows, part.shares);
   for (const Finding& finding : findings_) bytes += bytes_in(finding.found, finding.ends, finding.rows);

@@ -2,6 +2,7 @@
 // Grains that nothing holds come down until contacts do.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "kernels.hpp"
 #include "spot/random.hpp"
@@ -67,9 +68,8 @@ std::size_t TiledPacking::settle(bool everybody, std::uint64_t seed, double in_c
   find_hanging(container);
   const std::int64_t settled = communicator_->sum(static_cast<std::int64_t>(falling_.size()));
   if (settled == 0) return 0;
-  const auto comes_down = [this](const Place& place) { return points_[slot(place)].state != Point::laid; };
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    if (communicator_->sum(std::count_if(falling_.begin(), falling_.end(), comes_down)) == 0) break;
+    if (communicator_->sum(static_cast<std::int64_t>(falling_.size())) == 0) break;
     sweep_falling({seed, sweep, in_contact, sweep + 1 == most_sweeps}, container);
     update_falling(container, workers);
   }
@@ -80,7 +80,9 @@ std::size_t TiledPacking::settle(bool everybody, std::uint64_t seed, double in_c
 void TiledPacking::update_falling(const Container& container, Workers& workers) {
   choose_sent(no_cell);
   update_lists(container, workers);
-  keep_falling();
+  const auto lies = [this](const Place& place) { return points_[slot(place)].state == Point::laid; };
+  std::copy_if(falling_.begin(), falling_.end(), std::back_inserter(laid_), lies);
+  keep(falling_, Point::falling, Point::resting);
 }
 
 // ---- who hangs
@@ -161,19 +163,18 @@ void TiledPacking::visit_copies(const Visit& visit) const {
 
 // ---- how they come down
 
-/// Lists may have given grains other slots, or other ranks the grains: whoever occupies a slot with a falling grain
-/// notes it, so that some are noted twice and others are gone.
-void TiledPacking::keep_falling() {
-  const auto gone = [this](const Place& place) {
+/// Keeps the places of this rank's grains in these states, once each. Lists may have given grains other slots, or other
+/// ranks the grains: whoever occupies a slot with a grain that is not free notes it, so that some are noted twice and
+/// others are gone.
+void TiledPacking::keep(std::vector<Place>& places, std::int32_t first_state, std::int32_t last_state) const {
+  const auto gone = [&](const Place& place) {
     const std::int32_t state = points_[slot(place)].state;
-    return !owned(place.cell) || !(state == Point::falling || state == Point::resting || state == Point::laid);
+    return !owned(place.cell) || state < first_state || state > last_state;
   };
-  falling_.erase(std::remove_if(falling_.begin(), falling_.end(), gone), falling_.end());
-  const auto number = [this](const Place& place) { return slot(place); };
-  std::sort(falling_.begin(), falling_.end(), [&](const Place& a, const Place& b) { return number(a) < number(b); });
-  falling_.erase(std::unique(falling_.begin(), falling_.end(),
-                             [&](const Place& a, const Place& b) { return number(a) == number(b); }),
-                 falling_.end());
+  places.erase(std::remove_if(places.begin(), places.end(), gone), places.end());
+  std::sort(places.begin(), places.end(), [this](const Place& a, const Place& b) { return slot(a) < slot(b); });
+  const auto same = [this](const Place& a, const Place& b) { return slot(a) == slot(b); };
+  places.erase(std::unique(places.begin(), places.end(), same), places.end());
 }
 
 /// All grains decide by where all were before, and how they were.
@@ -185,11 +186,8 @@ void TiledPacking::sweep_falling(const Settling& settling, const Container& cont
   std::vector<Step> steps;
   for (const Place& place : falling_) {
     Step step{};
-    step.state = points_[slot(place)].state;
-    if (step.state != Point::laid) {
-      step.state = next_state(slot(place), step.by, settling, container);
-      part_from_bearers(slot(place), step.by, settling.in_contact, container);
-    }
+    step.state = next_state(slot(place), step.by, settling, container);
+    part_from_bearers(slot(place), step.by, settling.in_contact, container);
     steps.push_back(step);
   }
   for (std::size_t k = 0; k < falling_.size(); ++k) move_falling(slot(falling_[k]), steps[k].by, steps[k].state);
@@ -309,6 +307,9 @@ void TiledPacking::move_falling(std::uint32_t at, const Point& by, std::int32_t 
 /// looser than a poured bed. Now they press on each other and on those that they have come to lie on, and all are
 /// parted in sweeps as grains are in flow.
 void TiledPacking::press_together(double in_contact, const Container& container, Workers& workers) {
+  falling_.swap(laid_);
+  laid_.clear();
+  keep(falling_, Point::laid, Point::laid);
   take_along_neighbours(container);
   for (int sweep = 0; sweep < pressing_sweeps + most_parting_sweeps; ++sweep) {
     const double deepest = part_laid(in_contact, sweep < pressing_sweeps ? press : 0.0, container);
@@ -340,7 +341,7 @@ void TiledPacking::take_along_neighbours(const Container& container) {
   });
   for (const std::uint32_t at : found) falling_.push_back({at / capacity_, at % capacity_});
   for (const Place& place : falling_) set_state(slot(place), Point::due);
-  keep_falling();
+  keep(falling_, Point::due, Point::due);
   choose_sent(no_cell);
   exchange_border(container);
 }

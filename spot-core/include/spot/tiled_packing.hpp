@@ -299,7 +299,7 @@ class TiledPacking {
   template <typename Visit>
   void visit_copies(const Visit& visit) const;
   void update_falling(const Container& container, Workers& workers);
-  void keep_falling();
+  void keep(std::vector<Place>& places, std::int32_t first_state, std::int32_t last_state) const;
   void sweep_falling(const Settling& settling, const Container& container);
   std::int32_t next_state(std::uint32_t at, Point& step, const Settling& settling, const Container& container) const;
   double push_off_bearers(std::uint32_t at, const Point& place, double in_contact, const Container& container,
@@ -376,6 +376,7 @@ class TiledPacking {
 
   std::vector<Place> loosened_;  // of grains that may have lost what bore them
   std::vector<Place> falling_;   // of grains that come down, and perhaps of others
+  std::vector<Place> laid_;      // of those that have, and perhaps of others
   Overlap largest_overlap_of_new_;
 
   std::vector<std::int64_t> work_;  // in each layer of this rank, in cells reached by moves, since balance()
