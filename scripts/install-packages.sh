@@ -4,7 +4,7 @@
 set -euo pipefail
 
 packages=(
-  g++ cmake ninja-build
+  g++ cmake ninja-build make
   lammps liblammps-dev libfmt-dev mpi-default-dev mpi-default-bin liggghts
   libeigen3-dev librandom123-dev
   libgtest-dev libgmock-dev libbenchmark-dev

@@ -45,7 +45,7 @@ def tree(tmp_path):
 def test_cmake(prefix, tree, tmp_path):
     """Built from the tree, the fix gives the same dump as in our lmp, and on two ranks."""
     build = tmp_path / "build"
-    call("cmake", "-S", tree / "cmake", "-B", build, "-D", f"CMAKE_PREFIX_PATH={prefix}", "-D", "CMAKE_CXX_FLAGS=-Wall -Werror -O1")
+    call("cmake", "-G", "Ninja", "-S", tree / "cmake", "-B", build, "-D", f"CMAKE_PREFIX_PATH={prefix}", "-D", "CMAKE_CXX_FLAGS=-Wall -Werror -O1")
     call("nice", "cmake", "--build", build)
     expected = drain(tmp_path / "ours")
     text = deck().replace(f"include {LOAD_SPOT}", "")
