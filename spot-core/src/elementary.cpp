@@ -92,9 +92,8 @@ constexpr std::array<Wide, odds> inverse_odds = [] {
 
 /// The sum of coefficients[first + k * step] x^k for k < terms. From `few` on terms are below 2^-18 of the first, and
 /// those bits of a double are enough.
-template <std::size_t n>
-Wide series(const std::array<Wide, n>& coefficients, std::size_t first, std::size_t step, std::size_t few,
-            std::size_t terms, const Wide& x) {
+Wide series(const Wide* coefficients, std::size_t first, std::size_t step, std::size_t few, std::size_t terms,
+            const Wide& x) {
   std::size_t k = terms - 1;
   double rest = coefficients[first + k * step].high;
   while (k > few) rest = rest * x.high + coefficients[first + --k * step].high;
@@ -138,7 +137,7 @@ Wide log_of(const Wide& x) {
   }
   const Wide m = {high, scaled(x.low, -k)};
   const Wide s = (m - wide(1.0)) / (m + wide(1.0));
-  return ln_2 * wide(k) + wide(2.0) * s * series(inverse_odds, 0, 1, 3, odds, s * s);
+  return ln_2 * wide(k) + wide(2.0) * s * series(inverse_odds.data(), 0, 1, 3, odds, s * s);
 }
 
 /// 2^k e^r, where r is near 0.
@@ -147,7 +146,7 @@ double exp_of(const Wide& x) {
   if (x.high > beyond) return infinity;
   if (x.high < -beyond) return 0.0;
   const double k = std::floor(x.high / ln_2.high + 0.5);
-  return scaled(series(inverse_factorials, 0, 1, 6, 18, x - ln_2 * wide(k)).high, static_cast<int>(k));
+  return scaled(series(inverse_factorials.data(), 0, 1, 6, 18, x - ln_2 * wide(k)).high, static_cast<int>(k));
 }
 
 /// Cosine, or sine, of so many turns, which are found in a quarter turn that begins at an eighth.
@@ -162,8 +161,8 @@ double of_turns(double turns, bool sine) {
   if (odd && rest == 0.0) return 0.0;
   const Wide angle = two_pi * wide(rest), minus_square = -(angle * angle);
   // The series of the sine has 1/n! for odd n, with alternating signs.
-  const Wide value = odd ? angle * series(inverse_factorials, 1, 2, 4, 10, minus_square)
-                         : series(inverse_factorials, 0, 2, 4, 10, minus_square);
+  const Wide value = odd ? angle * series(inverse_factorials.data(), 1, 2, 4, 10, minus_square)
+                         : series(inverse_factorials.data(), 0, 2, 4, 10, minus_square);
   return number == 1.0 || number == 2.0 || number == 5.0 || number == 6.0 ? -value.high : value.high;
 }
 
