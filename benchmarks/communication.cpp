@@ -21,8 +21,8 @@
 
 #include "ranks_of_threads.hpp"
 #include "read_grains.hpp"
-#include "spot/spot_walk.hpp"
-#include "spot/windowed_drainage.hpp"
+#include "spot/drivers/windowed_drainage.hpp"
+#include "spot/walk/spot_walk.hpp"
 #include "spot_command.h"
 
 namespace {

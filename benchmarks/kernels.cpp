@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Time of the kernels of spot-core for each instruction set that this processor has, and of the moves and sweeps that
 // are made of them, on the packing at rest of examples/silo. Lengths in grain diameters. See README.md.
-#include "../spot-core/src/kernel_builds.hpp"
+#include "packing/kernel_builds.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "read_grains.hpp"
-#include "spot/spot_walk.hpp"
-#include "spot/tiled_packing.hpp"
+#include "spot/packing/tiled_packing.hpp"
+#include "spot/walk/spot_walk.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "spot/packing.hpp"
+#include "spot/packing/packing.hpp"
 
 /// From a file in metres, compressed or not; in grain diameters.
 inline std::vector<spot::Grain> read_grains(const std::string& path) {

@@ -19,10 +19,10 @@
 #include "mpi_communicator.h"
 #include "region_container.h"
 #include "saved_run.h"
-#include "spot/errors.hpp"
-#include "spot/memory.hpp"
-#include "spot/time_ordered_drainage.hpp"
-#include "spot/windowed_drainage.hpp"
+#include "spot/base/errors.hpp"
+#include "spot/base/memory.hpp"
+#include "spot/drivers/time_ordered_drainage.hpp"
+#include "spot/drivers/windowed_drainage.hpp"
 #include "spot_command.h"
 
 #include <algorithm>

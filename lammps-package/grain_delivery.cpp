@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 
 using spot::ByteReader;
 using spot::Bytes;

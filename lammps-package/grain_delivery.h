@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "spot/communicator.hpp"
-#include "spot/drainage.hpp"
+#include "spot/drivers/drainage.hpp"
+#include "spot/parallel/communicator.hpp"
 
 /// Where a grain has gone, for the rank that holds it in LAMMPS' arrays.
 struct Delivery {

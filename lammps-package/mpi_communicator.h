@@ -4,7 +4,7 @@
 
 #include <mpi.h>
 
-#include "spot/communicator.hpp"
+#include "spot/parallel/communicator.hpp"
 
 /// The ranks of an MPI communicator.
 class MpiCommunicator : public spot::Communicator {

@@ -4,7 +4,7 @@
 #include "region_container.h"
 
 #include "region.h"
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 
 #include <cmath>
 #include <string>

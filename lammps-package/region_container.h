@@ -3,7 +3,7 @@
 #define SPOT_REGION_CONTAINER_H
 
 #include "region_parts.h"
-#include "spot/container.hpp"
+#include "spot/geometry/container.hpp"
 
 #include <optional>
 

@@ -5,7 +5,7 @@
 
 #include "domain.h"
 #include "region.h"
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -2,7 +2,7 @@
 #ifndef SPOT_REGION_PARTS_H
 #define SPOT_REGION_PARTS_H
 
-#include "spot/container.hpp"
+#include "spot/geometry/container.hpp"
 
 #include <optional>
 #include <string>

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 
 using spot::ByteReader;
 using spot::Bytes;

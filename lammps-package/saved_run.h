@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "spot/communicator.hpp"
+#include "spot/parallel/communicator.hpp"
 
 /// What the fix puts into a restart file of LAMMPS.
 struct SavedRun {

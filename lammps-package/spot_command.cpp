@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 
 using spot::InvalidParameter;
 using spot::message;

@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "spot/container.hpp"
-#include "spot/parameters.hpp"
+#include "spot/geometry/container.hpp"
+#include "spot/walk/parameters.hpp"
 
 /// `box xlo xhi ylo yhi`: four vertical plane walls.
 struct BoxWalls {

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "spot/errors.hpp"
-#include "spot/time_ordered_drainage.hpp"
+#include "spot/base/errors.hpp"
+#include "spot/drivers/time_ordered_drainage.hpp"
 
 /// A body-centred lattice of the packing fraction that dense flow has, 0.58, filling the box up to a height.
 std::vector<spot::Grain> lattice(double half_width, double half_depth, double height) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 #include "spot_command.h"
 
 namespace {

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 
 #include "ranks_of_threads.hpp"
 #include "scenes.hpp"
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 
 namespace {
 

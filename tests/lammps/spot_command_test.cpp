@@ -13,7 +13,7 @@
 #include <set>
 #include <sstream>
 
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/cell_grid.hpp"
+#include "spot/packing/cell_grid.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/container.hpp"
+#include "spot/geometry/container.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/dilation_field.hpp"
+#include "spot/walk/dilation_field.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

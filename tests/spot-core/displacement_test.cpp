@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/displacement.hpp"
+#include "spot/packing/displacement.hpp"
 
 #include <gtest/gtest.h>
 

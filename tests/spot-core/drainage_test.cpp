@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/time_ordered_drainage.hpp"
+#include "spot/drivers/time_ordered_drainage.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

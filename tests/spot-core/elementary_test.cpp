@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Bits against recorded ones, values against the C library's long double, and what holds of the functions themselves.
-#include "spot/elementary.hpp"
+#include "spot/base/elementary.hpp"
 
 #include <gtest/gtest.h>
 

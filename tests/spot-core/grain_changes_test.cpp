@@ -8,8 +8,8 @@
 
 #include "ranks_of_threads.hpp"
 #include "scenes.hpp"
-#include "spot/time_ordered_drainage.hpp"
-#include "spot/windowed_drainage.hpp"
+#include "spot/drivers/time_ordered_drainage.hpp"
+#include "spot/drivers/windowed_drainage.hpp"
 
 namespace {
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "spot/cell_grid.hpp"
-#include "spot/drainage.hpp"
-#include "spot/errors.hpp"
+#include "spot/base/errors.hpp"
+#include "spot/drivers/drainage.hpp"
+#include "spot/packing/cell_grid.hpp"
 
 namespace invariants {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every build of the kernels gives the bits of the plain one, and the plain one what its description says.
-#include "../../spot-core/src/kernel_builds.hpp"
+#include "packing/kernel_builds.hpp"
 
 #include <gtest/gtest.h>
 

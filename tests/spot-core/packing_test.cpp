@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/packing.hpp"
+#include "spot/packing/packing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "scenes.hpp"
-#include "spot/displacement.hpp"
+#include "spot/packing/displacement.hpp"
 
 namespace {
 

@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "spot/container.hpp"
-#include "spot/displacement.hpp"
-#include "spot/packing.hpp"
-#include "spot/parameters.hpp"
-#include "spot/quantum.hpp"
+#include "spot/base/quantum.hpp"
+#include "spot/geometry/container.hpp"
+#include "spot/packing/displacement.hpp"
+#include "spot/packing/packing.hpp"
+#include "spot/walk/parameters.hpp"
 
 namespace scenes {
 

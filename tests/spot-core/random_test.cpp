@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/random.hpp"
+#include "spot/base/random.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "spot/communicator.hpp"
+#include "spot/parallel/communicator.hpp"
 
 namespace scenes {
 

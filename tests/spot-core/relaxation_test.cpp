@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/relaxation.hpp"
+#include "spot/relaxation/relaxation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "spot/container.hpp"
-#include "spot/errors.hpp"
-#include "spot/packing.hpp"
-#include "spot/parameters.hpp"
+#include "spot/base/errors.hpp"
+#include "spot/geometry/container.hpp"
+#include "spot/packing/packing.hpp"
+#include "spot/walk/parameters.hpp"
 
 namespace scenes {
 

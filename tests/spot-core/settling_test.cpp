@@ -8,7 +8,7 @@
 
 #include "ranks_of_threads.hpp"
 #include "scenes.hpp"
-#include "spot/tiled_packing.hpp"
+#include "spot/packing/tiled_packing.hpp"
 
 namespace {
 

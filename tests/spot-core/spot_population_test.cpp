@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/spot_population.hpp"
+#include "spot/walk/spot_population.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

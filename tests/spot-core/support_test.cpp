@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/support.hpp"
+#include "spot/packing/support.hpp"
 
 #include <gtest/gtest.h>
 

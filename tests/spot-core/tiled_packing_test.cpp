@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The tiled packing against loops over all grains and all pairs.
-#include "spot/tiled_packing.hpp"
+#include "spot/packing/tiled_packing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scenes.hpp"
-#include "spot/time_ordered_drainage.hpp"
+#include "spot/drivers/time_ordered_drainage.hpp"
 
 namespace {
 

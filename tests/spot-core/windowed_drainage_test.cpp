@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/windowed_drainage.hpp"
+#include "spot/drivers/windowed_drainage.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 #include "plain_packing.hpp"
 #include "scenes.hpp"
-#include "spot/time_ordered_drainage.hpp"
+#include "spot/drivers/time_ordered_drainage.hpp"
 
 namespace {
 

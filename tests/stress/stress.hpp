@@ -9,8 +9,8 @@
 
 #include "invariants.hpp"
 #include "scenes.hpp"
-#include "spot/time_ordered_drainage.hpp"
-#include "spot/windowed_drainage.hpp"
+#include "spot/drivers/time_ordered_drainage.hpp"
+#include "spot/drivers/windowed_drainage.hpp"
 
 namespace stress {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A project outside that uses the installed library.
-#include <spot/time_ordered_drainage.hpp>
+#include <spot/drivers/time_ordered_drainage.hpp>
 
 int main() {
   spot::SpotParameters spots;

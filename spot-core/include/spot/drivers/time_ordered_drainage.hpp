@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "spot/base/memory.hpp"
+#include "spot/drivers/drainage.hpp"
+#include "spot/packing/packing.hpp"
+#include "spot/packing/tiled_packing.hpp"
+#include "spot/relaxation/relaxation.hpp"
+#include "spot/walk/spot_population.hpp"
+
+namespace spot {
+
+/// The strictly time-ordered driver of 2006, the reference: every step of every spot, in order of time, displaces its
+/// block of grains and is followed by a relaxation of the grains around it.
+class TimeOrderedDrainage : public Drainage {
+ public:
+  /// Throws InvalidParameter, InvalidContainer or InvalidPacking, naming the grain, if the start is not
+  /// valid: grains outside the container or overlapping too deeply, an outlet that newborn spots do not reach.
+  TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                      std::shared_ptr<const Container> container, Packing packing);
+
+  /// Goes on from what save() gave. Everything else must be as it was. Throws InvalidState if it is damaged.
+  TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                      std::shared_ptr<const Container> container, double diameter, double extent, const Bytes& saved);
+
+  Bytes save() const override;
+  void advance_to(double time) override;
+  void replace_container(std::shared_ptr<const Container> container) override;
+  void visit_grains(const std::function<void(const Grain&)>& visit) const override;
+  const Quantum& quantum() const override { return packing_.quantum(); }
+  std::vector<Spot> spots() const override { return population_.spots(); }
+  Overlap largest_overlap() override;
+  std::size_t memory() const override {
+    return packing_.memory() + relaxation_.memory() + bytes_in(population_.spots(), near_);
+  }
+
+  const Packing& packing() const { return packing_; }
+
+ private:
+  TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                      std::shared_ptr<const Container> container, double diameter, double extent, ByteReader saved);
+  Overlap carry_out(const GrainChanges& changes) override;
+  void let_settle(TiledPacking& packing, bool everybody);
+  void carry_out(Move move);
+  bool relaxes_around(const Move& move) const;
+  /// As in 2006. The other schedules are there to see what comes of less, and may let the packing collapse.
+  bool relaxes_every_move() const {
+    return relaxation_parameters_.schedule == RelaxationSchedule::moves && relaxation_parameters_.every == 1;
+  }
+  void relax(const std::vector<std::uint32_t>& grains);
+  void relax_everywhere();
+  void take_out_drained();
+
+  Packing packing_;
+  SpotPopulation population_;
+  Relaxation relaxation_;
+  std::int64_t relaxed_everywhere_ = 0;  // times
+  std::vector<std::uint32_t> near_;      // grains around a move; kept to save allocations
+};
+
+}  // namespace spot

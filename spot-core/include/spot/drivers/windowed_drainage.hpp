@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "spot/base/bytes.hpp"
+#include "spot/drivers/drainage.hpp"
+#include "spot/packing/tiled_packing.hpp"
+#include "spot/parallel/communicator.hpp"
+#include "spot/walk/dilation_field.hpp"
+
+namespace spot {
+
+/// The fast driver. Per window of time all spots walk and displace their blocks, in order of birth; then the cells in
+/// which that has used up the tolerance are relaxed, as often as it takes.
+///
+/// How much a cell needs is kept in its account, the number of moves that reached into it: n of them add
+/// w^2 dx^2 n s / 3 to the mean square overlap along the line of centres, s being the mean square difference of the
+/// shares of two grains in touch. A cell is due when that exceeds the tolerance squared, and a sweep pays for that many
+/// moves.
+///
+/// With a fixed volume, moves are weighed by what they enclose before the first move of their window.
+///
+/// Several ranks can share the grains and the spots: a spot belongs to the rank whose layers it is in. Once in a window
+/// its moves go to all ranks whose grains they may reach, the shares of these come back, and weights go out.
+/// Constructors, advance_to(), change_grains() and total() are collective then.
+class WindowedDrainage : public Drainage {
+ public:
+  /// `window`: in the units of the rates. `grains`: of which each rank brings some. Throws as TimeOrderedDrainage does,
+  /// and InvalidParameter unless window and relaxation.tolerance are positive.
+  WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                   double window, int threads, std::shared_ptr<const Container> container, double diameter,
+                   double extent, const std::vector<Grain>& grains,
+                   std::shared_ptr<Communicator> communicator = std::make_shared<Alone>());
+
+  /// Goes on from a saved state: what save() gave on every rank, of however many. Everything else must be as it was.
+  /// Throws InvalidState if it is damaged.
+  WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
+                   double window, int threads, std::shared_ptr<const Container> container, double diameter,
+                   double extent, const std::vector<Bytes>& saved,
+                   std::shared_ptr<Communicator> communicator = std::make_shared<Alone>());
+
+  Bytes save() const override;
+  void advance_to(double time) override;
+  void replace_container(std::shared_ptr<const Container> container) override;
+  void set_threads(int threads) override { workers_ = std::make_unique<Workers>(threads); }
+  void visit_grains(const std::function<void(const Grain&)>& visit) const override { packing_.visit_grains(visit); }
+  const Quantum& quantum() const override { return packing_.quantum(); }
+  std::vector<Spot> spots() const override;
+  Overlap largest_overlap() override { return packing_.largest_overlap(); }
+  std::size_t memory() const override;
+  Counters total() override;
+
+  /// How far the grains over the orifice go down in this time, on average (diameters).
+  static double flow_through_orifice(const SpotParameters& spots, double time, double diameter, double orifice_radius);
+
+  /// Moves into a cell after which it is relaxed.
+  double due() const { return due_; }
+
+ private:
+  /// A spot that this rank moves.
+  struct Walker {
+    Spot spot;
+    bool removed;
+  };
+
+  /// A move that may reach grains of this rank, or that one of its spots has made.
+  struct Turn {
+    Move move;
+    int owner;   // rank to which the spot belongs after the window
+    int shares;  // of the grains that it encloses, as far as is known
+  };
+
+  Overlap carry_out(const GrainChanges& changes) override;
+  static double moves_until_due(const SpotParameters& spots, double tolerance, double diameter);
+  static double positive_window(double window);
+  /// Throws InvalidParameter if relaxation could not follow what spots do in a window.
+  void require_fitting_window() const;
+  bool here(const Vector3& position) const { return packing_.owner(position.z()) == communicator_->rank(); }
+  void set_paces(double now);
+  void give_birth(double until);
+  void walk(double until);
+  void share_turns();
+  void hand_over(std::vector<Bytes>& outgoing);
+  void displace();
+  void weigh(const std::vector<int>& shares, std::vector<Move>& moves);
+  void gather_shares();
+  void send_weights();
+  Turn& turn_of(std::int64_t spot, std::int64_t number);
+  void settle();
+  void let_settle(bool everybody);
+  void relax();
+  void drop_removed();
+  std::vector<Bytes> read(const std::vector<Bytes>& saved);
+  void keep_own_spots();
+
+  std::shared_ptr<Communicator> communicator_;
+  std::unique_ptr<Workers> workers_;
+  double window_;
+  double due_;
+  // What read() sets stands before the packing.
+  std::vector<Walker> walkers_;  // in order of birth
+  std::size_t removed_ = 0;
+  std::int64_t born_ = 0, windows_ = 0;
+  double next_birth_ = 0.0;
+  TiledPacking packing_;
+  SpotWalk walk_;
+  DilationField dilation_;
+
+  // Of the window at hand.
+  std::vector<Turn> turns_;  // in the order of (spot, number)
+  std::vector<Move> moves_;  // the same
+};
+
+}  // namespace spot

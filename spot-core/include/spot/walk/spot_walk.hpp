@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "spot/geometry/container.hpp"
+#include "spot/walk/move.hpp"
+#include "spot/walk/parameters.hpp"
+
+namespace spot {
+
+/// One diffusing spot of free volume.
+struct Spot {
+  std::int64_t id;
+  std::int64_t steps;  ///< taken so far
+  Vector3 position;
+  double next_step;     ///< time of the step to come
+  double turn = 0.0;    ///< a uniform random number, for its direction
+  double chance = 0.0;  ///< another, for whoever draws lots
+  double pace = 1.0;    ///< its speed over v_s
+};
+
+/// How spots are born and walk. Walks do not look at grains, and there is no state but the spot: all draws follow from
+/// (seed, spot id, step number).
+///
+/// A spot is born uniformly on the disc of the orifice's radius less R_s, and R_s below the orifice: it
+/// enters the packing with its whole influence, so that as much leaves through the orifice as the spot
+/// brings down through any height above (volume closes; see ARCHITECTURE.md).
+class SpotWalk {
+ public:
+  /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
+  SpotWalk(const SpotParameters& parameters, const Container& container);
+
+  /// Time from the birth before it, or from time 0, to the birth of spot `id`: births are Poisson at rate nu_s.
+  double time_before_birth(std::int64_t id) const;
+
+  Spot birth(std::int64_t id, double time, const Container& container) const;
+
+  /// From `time` on, the spot goes at this pace: what is left of its waiting time gets shorter or longer.
+  void set_pace(Spot& spot, double time, double pace) const;
+
+  /// Carries out the next step of a spot and draws the time of the one after.
+  Move step(Spot& spot, const Container& container) const;
+
+ private:
+  void draw_next_step(Spot& spot) const;
+
+  SpotParameters parameters_;
+};
+
+}  // namespace spot

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/drivers/time_ordered_drainage.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "packing/packed_grain.hpp"
+#include "spot/packing/displacement.hpp"
+
+namespace spot {
+
+namespace {
+
+std::vector<Grain> take_grains(ByteReader& saved) {
+  std::vector<Grain> grains;
+  for (auto n = saved.take<std::uint64_t>(); n > 0; --n) grains.push_back(take_grain(saved));
+  return grains;
+}
+
+}  // namespace
+
+TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
+                                         const DrainageLimits& limits, std::shared_ptr<const Container> container,
+                                         Packing packing)
+    : Drainage(spots, relaxation, limits, std::move(container), packing.diameter()),
+      packing_(std::move(packing)),
+      population_(spots, *container_, packing_.diameter()),
+      relaxation_(relaxation) {
+  require_valid_start();
+  TiledPacking tiled(packing_.diameter(), packing_.extent(), limits_.outlet, packing_.grains(), *container_);
+  let_settle(tiled, true);
+}
+
+TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
+                                         const DrainageLimits& limits, std::shared_ptr<const Container> container,
+                                         double diameter, double extent, const Bytes& saved)
+    : TimeOrderedDrainage(spots, relaxation, limits, std::move(container), diameter, extent, unseal(saved)) {}
+
+TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
+                                         const DrainageLimits& limits, std::shared_ptr<const Container> container,
+                                         double diameter, double extent, ByteReader saved)
+    : Drainage(spots, relaxation, limits, std::move(container), diameter),
+      packing_(diameter, extent, take_grains(saved)),
+      population_(spots, *container_, diameter, saved),
+      relaxation_(relaxation) {
+  counters_ = saved.take<Counters>();
+  relaxed_everywhere_ = saved.take<std::int64_t>();
+}
+
+/// Lists need not be saved: no bit depends on them.
+Bytes TimeOrderedDrainage::save() const {
+  Bytes bytes;
+  append(bytes, static_cast<std::uint64_t>(packing_.size()));
+  for (const Grain& grain : packing_.grains()) append(bytes, grain);
+  population_.save(bytes);
+  append(bytes, counters_);
+  append(bytes, relaxed_everywhere_);
+  seal(bytes);
+  return bytes;
+}
+
+void TimeOrderedDrainage::advance_to(double time) {
+  const bool global = relaxation_parameters_.schedule == RelaxationSchedule::global && relaxation_parameters_.every > 0;
+  const double interval = relaxation_parameters_.every * parameters_.mean_waiting_time();
+  while (const auto move = population_.next_move(time, container())) {
+    while (global && static_cast<double>(relaxed_everywhere_ + 1) * interval <= move->time) relax_everywhere();
+    carry_out(*move);
+  }
+}
+
+void TimeOrderedDrainage::carry_out(Move move) {
+  packing_.refresh(container());
+  const double reach = parameters_.radius + relaxation_parameters_.shell * packing_.diameter();
+  packing_.find_movable(move.middle, reach, near_);
+  if (parameters_.fixed_volume > 0.0)
+    move.weight = fixed_volume_weight(parameters_, move.middle.z() - limits_.outlet,
+                                      enclosed_shares(packing_, near_, move, parameters_));
+  const int shares = displace(packing_, near_, move, parameters_, received());
+  ++counters_.moves;
+  counters_.shares_moved += shares;
+  if (shares == 0) {
+    // Below the orifice a spot may meet no grains yet; above it, it has come out at the top of the packing.
+    if (move.middle.z() > container().orifice().centre.z() + parameters_.radius) population_.remove_last_moved();
+    return;
+  }
+  if (relaxes_around(move)) {
+    packing_.update_lists(container());
+    relax(near_);
+  }
+  if (move.middle.z() - reach < limits_.outlet) take_out_drained();
+}
+
+bool TimeOrderedDrainage::relaxes_around(const Move& move) const {
+  const int k = relaxation_parameters_.every;
+  if (k == 0) return false;
+  switch (relaxation_parameters_.schedule) {
+    case RelaxationSchedule::moves:
+      return counters_.moves % k == 0;
+    case RelaxationSchedule::chance:
+      return move.chance * k < 1.0;
+    case RelaxationSchedule::spot:
+      return move.number % k == 0;
+    default:
+      return false;
+  }
+}
+
+void TimeOrderedDrainage::relax(const std::vector<std::uint32_t>& grains) {
+  const double deepest = relaxation_.sweep(packing_, container(), grains);
+  ++counters_.sweeps;
+  counters_.grains_swept += static_cast<std::int64_t>(grains.size());
+  // Pushes that make overlaps much deeper start from deep ones.
+  if (!relaxes_every_move() || deepest <= 0.25 * overlap_allowed()) return;
+  packing_.update_lists(container());
+  require_no_collapse(packing_.largest_overlap(grains));
+}
+
+void TimeOrderedDrainage::relax_everywhere() {
+  packing_.refresh(container());
+  near_.clear();
+  for (std::uint32_t i = 0; i < packing_.slots(); ++i)
+    if (packing_.present(i) && !packing_.held(i)) near_.push_back(i);
+  relax(near_);
+  ++relaxed_everywhere_;
+}
+
+void TimeOrderedDrainage::take_out_drained() {
+  packing_.update_lists(container());
+  const std::size_t before = drained_.size();
+  for (const std::uint32_t i : near_) {
+    if (packing_.z()[i] >= limits_.outlet) continue;
+    drained_.push_back(packing_.remove(i));
+    ++counters_.drained;
+  }
+  if (relaxes_every_move()) require_left_through_orifice(before);
+}
+
+Overlap TimeOrderedDrainage::carry_out(const GrainChanges& changes) {
+  TiledPacking tiled(packing_.diameter(), packing_.extent(), limits_.outlet, packing_.grains(), container());
+  tiled.change(changes.gone, changes.come, container());
+  const std::set<std::int64_t> gone(changes.gone.begin(), changes.gone.end());
+  std::vector<Grain> grains;
+  for (const Grain& grain : packing_.grains())
+    if (gone.count(grain.id) == 0) grains.push_back(grain);
+  grains.insert(grains.end(), changes.come.begin(), changes.come.end());
+  packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
+  if (tiled.largest_overlap_of_new().depth <= limits_.largest_overlap) let_settle(tiled, false);
+  return tiled.largest_overlap_of_new();
+}
+
+/// In the cells of the windowed driver, whose quantum is a multiple of the one here.
+void TimeOrderedDrainage::let_settle(TiledPacking& tiled, bool everybody) {
+  Workers alone(1);
+  std::map<std::int64_t, Vector3> before;
+  tiled.visit_grains([&](const Grain& grain) { before[grain.id] = grain.position; });
+  if (tiled.settle(everybody, parameters_.seed, relaxation_parameters_.contact_overlap, container(), alone) == 0)
+    return;
+  std::map<std::int64_t, Vector3> moved;
+  tiled.visit_grains([&](const Grain& grain) {
+    if (grain.position != before[grain.id]) moved[grain.id] = grain.position;
+  });
+  std::vector<Grain> grains = packing_.grains();
+  for (Grain& grain : grains)
+    if (const auto found = moved.find(grain.id); found != moved.end()) grain.position = found->second;
+  packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
+}
+
+void TimeOrderedDrainage::replace_container(std::shared_ptr<const Container> container) {
+  container_ = std::move(container);
+  packing_.mark_near_walls(*container_);
+  population_.replace_container(*container_);
+}
+
+void TimeOrderedDrainage::visit_grains(const std::function<void(const Grain&)>& visit) const {
+  for (std::size_t i = 0; i < packing_.slots(); ++i)
+    if (packing_.present(i)) visit({packing_.id(i), packing_.position(i), packing_.held(i)});
+}
+
+Overlap TimeOrderedDrainage::largest_overlap() {
+  packing_.refresh(container());
+  return packing_.largest_overlap();
+}
+
+}  // namespace spot

@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
-#define SPOT_KERNELS base
-#define SPOT_INSTRUCTION_SET "base"
-#include "kernels.inl"

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "spot/packing/point.hpp"
+
+namespace spot::kernels {
+
+/// Kernels work on whole packs of points: numbers of points given to them, except grains to be pushed, are multiples of
+/// this, and neighbour lists have room for a multiple of `lanes`.
+constexpr std::uint32_t pack = 4, lanes = 16;
+
+/// Kernels that work on a list of grains fetch what belongs to a grain so many grains before they use it, so such lists
+/// go on with as many that are fetched and not used.
+constexpr std::uint32_t ahead = 8;
+
+/// Lists of neighbours: `capacity` places a point, `size` of them in use; the others hold any valid index.
+struct Lists {
+  const std::uint32_t* neighbours;
+  const std::uint8_t* size;
+  std::uint32_t capacity;
+};
+
+/// How grains push each other apart.
+struct Push {
+  float per_square;   ///< 1/d^2 in quanta
+  float pair_share;   ///< of the overlap, by which each of two grains moves
+  float fixed_share;  ///< of the overlap, by which a grain moves if the other stays
+};
+
+/// One build of all kernels. They are compiled several times, for different instruction sets, from kernels.inl; results
+/// are the same bits for all: every number goes through the same operations (-ffp-contract=off), and sums are of
+/// integers. Lengths are in quanta, their squares in single precision.
+struct Kernels {
+  const char* instruction_set;
+
+  /// The shares of the points in a move around `middle`, together, each cut to whole parts (whole_share).
+  int (*enclosed_shares)(const Point* points, std::size_t n, const Point& middle, const Reach& reach);
+
+  /// Adds to every point its share of `by`, cut to whole quanta.
+  void (*displace)(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by);
+
+  /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
+  /// the line of centres for r < d, each component cut to whole quanta; the pair's share if the neighbour is due, the
+  /// fixed one if not. (d - r) / r is expanded in s = 1 - r^2/d^2, good to 1e-4 of itself for overlaps up to 0.05 d;
+  /// deeper ones are pushed apart by somewhat less, which another sweep makes good.
+  void (*push_off_neighbours)(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
+                              const Push& push, Point* pushes);
+
+  /// Corrects the grains of some cells, one cell after the other, `in_cell` of them in each: a grain moves by its push
+  /// and by the part `kept` of its last correction, cut to whole quanta, and remembers that as its last. It is not due
+  /// any more.
+  void (*correct)(Point* points, Point* last, const std::uint32_t* grains, const std::uint8_t* in_cell,
+                  std::size_t cells, const Point* pushes, float kept, Corrections* corrections);
+
+  /// Writes first, first + 1, ... of those of n points, empty ones apart, that are within reach of `centre`; returns
+  /// how many. `found` has room for all of them.
+  std::size_t (*find_within)(const Point* points, std::size_t n, const Point& centre, float reach_squared,
+                             std::uint32_t first, std::uint32_t* found);
+
+  /// Largest squared distance of a point from its reference.
+  float (*farthest)(const Point* points, const Point* references, std::size_t n);
+
+  /// Writes the indices of those of n values that are `least` or more; returns how many. `found` has room for all.
+  std::size_t (*find_reached)(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found);
+};
+
+}  // namespace spot::kernels

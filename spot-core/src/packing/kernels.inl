@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The kernels, compiled once an instruction set: plain loops for the base, packs of 8 or 16 numbers above it.
+// Everything here has internal linkage and no inline library function is used, so that no code built for one processor
+// can be linked into what another one runs. Every number goes through the same operations in the same order in all.
+// Integers wrap around (-fwrapv).
+#include "packing/kernels.hpp"
+
+namespace {
+
+using spot::Corrections;
+using spot::Point;
+using spot::Reach;
+using spot::kernels::ahead;
+using spot::kernels::Lists;
+
+/// Of a whole share.
+constexpr float parts = spot::whole_share;
+
+/// Differences of states are seen only where an empty place is on one side.
+constexpr std::int32_t only_empty = Point::empty;
+
+#ifndef __AVX2__
+
+float square(std::int32_t difference) { return static_cast<float>(difference) * static_cast<float>(difference); }
+
+float square_distance(const Point& a, const Point& b, std::int32_t states_seen) {
+  return (square(a.x - b.x) + square(a.y - b.y)) + (square(a.z - b.z) + square((a.state - b.state) & states_seen));
+}
+
+void add(Point& point, std::int32_t x, std::int32_t y, std::int32_t z) {
+  point.x += x;
+  point.y += y;
+  point.z += z;
+}
+
+float share(const Point& point, const Point& middle, const Reach& reach) {
+  const float linear = (reach.radius_squared - square_distance(point, middle, -1)) * reach.per_square;
+  return linear > 0.0f ? linear < 1.0f ? linear : 1.0f : 0.0f;
+}
+
+int enclosed_shares(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+  int shares = 0;
+  for (std::size_t i = 0; i < n; ++i) shares += static_cast<int>(share(points[i], middle, reach) * parts);
+  return shares;
+}
+
+void displace(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by) {
+  const float x = static_cast<float>(by.x), y = static_cast<float>(by.y), z = static_cast<float>(by.z);
+  for (std::size_t i = 0; i < n; ++i) {
+    const float part = share(points[i], middle, reach);
+    add(points[i], static_cast<std::int32_t>(part * x), static_cast<std::int32_t>(part * y),
+        static_cast<std::int32_t>(part * z));
+  }
+}
+
+std::size_t find_within(const Point* points, std::size_t n, const Point& centre, float reach_squared,
+                        std::uint32_t first, std::uint32_t* found) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (square_distance(points[i], centre, only_empty) <= reach_squared)
+      found[count++] = first + static_cast<std::uint32_t>(i);
+  return count;
+}
+
+float farthest(const Point* points, const Point* references, std::size_t n) {
+  float largest = 0.0f;
+  for (std::size_t i = 0; i < n; ++i) {
+    const float squared = square_distance(points[i], references[i], -1);
+    if (squared > largest) largest = squared;
+  }
+  return largest;
+}
+
+void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
+                         const spot::kernels::Push& push, Point* pushes) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point& own = points[grains[i]];
+    const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
+    Point sum = {0, 0, 0, 0};
+    float depth = 0.0f;
+    for (std::uint32_t k = 0; k < lists.size[grains[i]]; ++k) {
+      const Point& other = points[list[k]];
+      const float dx = static_cast<float>(own.x - other.x), dy = static_cast<float>(own.y - other.y),
+                  dz = static_cast<float>(own.z - other.z);
+      const float s = 1.0f - ((dx * dx + dy * dy) + dz * dz) * push.per_square;
+      if (!(s > 0.0f)) continue;
+      const float share = other.state == Point::due ? push.pair_share : push.fixed_share;
+      const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
+      add(sum, static_cast<std::int32_t>(scale * dx), static_cast<std::int32_t>(scale * dy),
+          static_cast<std::int32_t>(scale * dz));
+      if (s > depth) depth = s;
+    }
+    __builtin_memcpy(&sum.state, &depth, sizeof depth);
+    pushes[i] = sum;
+  }
+}
+
+std::int32_t kept_of(std::int32_t last, float kept) {
+  return static_cast<std::int32_t>(static_cast<float>(last) * kept);
+}
+
+void correct(Point* points, Point* last, const std::uint32_t* grains, const std::uint8_t* in_cell, std::size_t cells,
+             const Point* pushes, float kept, Corrections* corrections) {
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    corrections[cell] = {0.0f, 0.0f};
+    for (std::uint32_t k = 0; k < in_cell[cell]; ++k, ++grains, ++pushes) {
+      Point& by = last[*grains];
+      by = {pushes->x + kept_of(by.x, kept), pushes->y + kept_of(by.y, kept), pushes->z + kept_of(by.z, kept), 0};
+      add(points[*grains], by.x, by.y, by.z);
+      points[*grains].state = Point::free;
+      const float squared = square_distance(by, {0, 0, 0, 0}, -1);
+      if (squared > corrections[cell].longest_squared) corrections[cell].longest_squared = squared;
+      float depth;
+      __builtin_memcpy(&depth, &pushes->state, sizeof depth);
+      if (depth > corrections[cell].depth) corrections[cell].depth = depth;
+    }
+  }
+}
+
+std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (values[i] >= least) found[count++] = static_cast<std::uint32_t>(i);
+  return count;
+}
+
+#else
+
+typedef std::int32_t Quarter __attribute__((vector_size(16), may_alias));  // one point
+typedef float QuarterFloats __attribute__((vector_size(16)));
+typedef std::int32_t Half __attribute__((vector_size(32)));  // two
+
+inline Half join(Quarter a, Quarter b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+inline Quarter low_half(Half p) { return __builtin_shufflevector(p, p, 0, 1, 2, 3); }
+inline Quarter high_half(Half p) { return __builtin_shufflevector(p, p, 4, 5, 6, 7); }
+inline Quarter load_point(const Point& point) { return *reinterpret_cast<const Quarter*>(&point); }
+inline void store_point(Quarter point, Point& to) { *reinterpret_cast<Quarter*>(&to) = point; }
+inline Quarter greater(Quarter a, Quarter b) { return a > b ? a : b; }
+
+inline float float_of(std::int32_t bits) {
+  float value;
+  __builtin_memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+void correct(Point* points, Point* last, const std::uint32_t* grains, const std::uint8_t* in_cell, std::size_t cells,
+             const Point* pushes, float kept, Corrections* corrections) {
+  constexpr Quarter coordinates = {-1, -1, -1, 0};
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    Quarter greatest = {};  // the bits of a squared length and, last, of a depth
+    for (std::uint32_t k = 0; k < in_cell[cell]; ++k, ++grains, ++pushes) {
+      __builtin_prefetch(last + grains[ahead], 1);
+      Point &point = points[*grains], &by = last[*grains];
+      const Quarter push = load_point(*pushes);
+      const QuarterFloats carried = __builtin_convertvector(load_point(by), QuarterFloats) * kept;
+      const Quarter step = (push + __builtin_convertvector(carried, Quarter)) & coordinates;
+      store_point(step, by);
+      store_point((load_point(point) + step) & coordinates, point);
+      const QuarterFloats f = __builtin_convertvector(step, QuarterFloats), squares = f * f;
+      const QuarterFloats pairs = squares + __builtin_shufflevector(squares, squares, 1, 0, 3, 2);
+      const QuarterFloats squared = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
+      // Floats that are not negative are in the order of their bits.
+      greatest = greater(greatest, __builtin_shufflevector((Quarter)squared, push, 0, 0, 0, 7));
+    }
+    corrections[cell] = {float_of(greatest[0]), float_of(greatest[3])};
+  }
+}
+
+#ifdef __AVX512F__
+
+constexpr std::uint32_t width = 16;
+typedef std::int32_t Pack __attribute__((vector_size(64)));
+typedef std::int32_t Unaligned __attribute__((vector_size(64), aligned(4), may_alias));
+typedef float Floats __attribute__((vector_size(64)));
+
+inline Pack join(Half a, Half b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+inline Half low_part(Pack p) { return __builtin_shufflevector(p, p, 0, 1, 2, 3, 4, 5, 6, 7); }
+inline Half high_part(Pack p) { return __builtin_shufflevector(p, p, 8, 9, 10, 11, 12, 13, 14, 15); }
+inline Pack load_for_transpose(const Point* points, const std::uint32_t* list, int k) {
+  return join(join(load_point(points[list[k]]), load_point(points[list[k + 4]])),
+              join(load_point(points[list[k + 8]]), load_point(points[list[k + 12]])));
+}
+inline Pack repeat(Quarter q) { return join(join(q, q), join(q, q)); }
+/// From each point of a and of b in turn: numbers 0, 0, 1, 1 or 2, 2, 3, 3.
+inline Pack low(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+}
+inline Pack high(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+}
+/// The same by pairs of numbers.
+inline Pack low_pairs(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+}
+inline Pack high_pairs(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+}
+inline Floats swap(Floats p) {
+  return __builtin_shufflevector(p, p, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
+}
+inline Floats swap_pairs(Floats p) {
+  return __builtin_shufflevector(p, p, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
+}
+inline Quarter add_parts(Pack p) {
+  const Half h = low_part(p) + high_part(p);
+  return low_half(h) + high_half(h);
+}
+inline Quarter greatest_part(Pack p) {
+  const Half a = low_part(p), b = high_part(p), h = a > b ? a : b;
+  return greater(low_half(h), high_half(h));
+}
+inline unsigned bits(Pack mask) { return __builtin_ia32_cvtd2mask512(mask); }
+constexpr Pack numbers = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+#else
+
+constexpr std::uint32_t width = 8;
+typedef Half Pack;
+typedef std::int32_t Unaligned __attribute__((vector_size(32), aligned(4), may_alias));
+typedef float Floats __attribute__((vector_size(32)));
+
+inline Pack load_for_transpose(const Point* points, const std::uint32_t* list, int k) {
+  return join(load_point(points[list[k]]), load_point(points[list[k + 4]]));
+}
+inline Pack repeat(Quarter q) { return join(q, q); }
+inline Pack low(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13); }
+inline Pack high(Pack a, Pack b) { return __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15); }
+inline Pack low_pairs(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13); }
+inline Pack high_pairs(Pack a, Pack b) { return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15); }
+inline Floats swap(Floats p) { return __builtin_shufflevector(p, p, 1, 0, 3, 2, 5, 4, 7, 6); }
+inline Floats swap_pairs(Floats p) { return __builtin_shufflevector(p, p, 2, 3, 0, 1, 6, 7, 4, 5); }
+inline Quarter add_parts(Pack p) { return low_half(p) + high_half(p); }
+inline Quarter greatest_part(Pack p) { return greater(low_half(p), high_half(p)); }
+inline unsigned bits(Pack mask) { return static_cast<unsigned>(__builtin_ia32_movmskps256((Floats)mask)); }
+constexpr Pack numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+
+#endif
+
+/// Points that one pack holds.
+constexpr std::uint32_t points_in_pack = width / 4;
+
+inline Pack load(const void* from) { return *static_cast<const Unaligned*>(from); }
+inline void store(Pack p, void* to) { *static_cast<Unaligned*>(to) = p; }
+inline Pack all(std::int32_t value) { return Pack{} + value; }
+inline Floats all(float value) { return Floats{} + value; }
+inline Floats floats(Pack p) { return __builtin_convertvector(p, Floats); }
+inline Pack whole(Floats f) { return __builtin_convertvector(f, Pack); }
+
+/// The square of the four numbers of each point, in all four places of it.
+inline Floats squares(Pack points) {
+  const Floats p = floats(points), q = p * p, pairs = q + swap(q);
+  return pairs + swap_pairs(pairs);
+}
+
+inline Floats shares(Pack points, Pack middle, Floats radius_squared, Floats per_square) {
+  const Floats zero = all(0.0f), one = all(1.0f);
+  const Floats linear = (radius_squared - squares(points - middle)) * per_square;
+  const Floats positive = linear > zero ? linear : zero;
+  return positive < one ? positive : one;
+}
+
+int enclosed_shares(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+  const Pack centre = repeat(load_point(middle));
+  const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square);
+  Pack sum = {};
+  for (std::size_t i = 0; i < n; i += points_in_pack)
+    sum += whole(shares(load(points + i), centre, radius_squared, per_square) * parts);
+  return add_parts(sum)[0];
+}
+
+void displace(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by) {
+  const Pack centre = repeat(load_point(middle));
+  const Floats step = floats(repeat(load_point(by)));
+  const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square);
+  for (std::size_t i = 0; i < n; i += points_in_pack) {
+    const Pack p = load(points + i);
+    store(p + whole(step * shares(p, centre, radius_squared, per_square)), points + i);
+  }
+}
+
+std::size_t find_within(const Point* points, std::size_t n, const Point& centre, float reach_squared,
+                        std::uint32_t first, std::uint32_t* found) {
+  const Pack from = repeat(load_point(centre)), seen = repeat(Quarter{-1, -1, -1, only_empty});
+  const Floats limit = all(reach_squared);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; i += points_in_pack) {
+    unsigned inside = bits(squares((load(points + i) - from) & seen) <= limit);
+    for (std::uint32_t k = 0; inside != 0; ++k, inside >>= 4)
+      if (inside & 1u) found[count++] = first + static_cast<std::uint32_t>(i) + k;
+  }
+  return count;
+}
+
+inline float greatest(Pack floats_as_integers) {
+  // Floats that are not negative are in the order of their bits.
+  const Quarter q = greatest_part(floats_as_integers);
+  std::int32_t largest = q[0];
+  for (int k = 1; k < 4; ++k) largest = q[k] > largest ? q[k] : largest;
+  return float_of(largest);
+}
+
+float farthest(const Point* points, const Point* references, std::size_t n) {
+  Floats largest = all(0.0f);
+  for (std::size_t i = 0; i < n; i += points_in_pack) {
+    const Floats s = squares(load(points + i) - load(references + i));
+    largest = s > largest ? s : largest;
+  }
+  return greatest((Pack)largest);
+}
+
+/// Sums over x, y and z, and the greatest of s.
+inline Quarter reduce(Pack x, Pack y, Pack z, Floats s) {
+  const Pack xy = low(x, y) + high(x, y), zs = low(z, z) + high(z, z);
+  Quarter sums = add_parts(low_pairs(xy, zs) + high_pairs(xy, zs));
+  const float depth = greatest((Pack)s);
+  __builtin_memcpy(&sums[3], &depth, sizeof depth);
+  return sums;
+}
+
+void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
+                         const spot::kernels::Push& push, Point* pushes) {
+  const Floats per_square = all(push.per_square), zero = all(0.0f);
+  const Pack pair_share = (Pack)all(push.pair_share), fixed_share = (Pack)all(push.fixed_share);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point& own = points[grains[i]];
+    const Pack x = all(own.x), y = all(own.y), z = all(own.z);
+    Pack push_x = {}, push_y = {}, push_z = {};
+    Floats depth = zero;
+    const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
+    __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i + ahead]) * lists.capacity);
+    const std::int32_t size = lists.size[grains[i]];
+    for (std::int32_t k = 0; k < size; k += static_cast<std::int32_t>(width), list += width) {
+      // As many points as a pack has numbers, turned into their x, y, z and states.
+      const Pack a = load_for_transpose(points, list, 0), b = load_for_transpose(points, list, 1);
+      const Pack c = load_for_transpose(points, list, 2), d = load_for_transpose(points, list, 3);
+      const Pack ab = low(a, b), cd = low(c, d);
+      const Floats dx = floats(x - low_pairs(ab, cd)), dy = floats(y - high_pairs(ab, cd)),
+                   dz = floats(z - low_pairs(high(a, b), high(c, d)));
+      const Pack is_due = high_pairs(high(a, b), high(c, d)) == Point::due;
+      const Floats share = (Floats)((is_due & pair_share) | (~is_due & fixed_share));
+      const Floats apart = 1.0f - ((dx * dx + dy * dy) + dz * dz) * per_square;
+      const Pack listed = numbers < size - k;
+      const Floats s = (Floats)((Pack)(apart > zero ? apart : zero) & listed);
+      const Floats scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
+      push_x += whole(scale * dx);
+      push_y += whole(scale * dy);
+      push_z += whole(scale * dz);
+      depth = s > depth ? s : depth;
+    }
+    *reinterpret_cast<Quarter*>(pushes + i) = reduce(push_x, push_y, push_z, depth);
+  }
+}
+
+std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t least, std::uint32_t* found) {
+  std::size_t count = 0, i = 0;
+  for (; i + width <= n; i += width) {
+    unsigned reached = bits(load(values + i) >= least);
+    for (; reached != 0; reached &= reached - 1)
+      found[count++] = static_cast<std::uint32_t>(i) + static_cast<std::uint32_t>(__builtin_ctz(reached));
+  }
+  for (; i < n; ++i)
+    if (values[i] >= least) found[count++] = static_cast<std::uint32_t>(i);
+  return count;
+}
+
+#endif
+
+}  // namespace
+
+namespace spot::kernels {
+
+extern const Kernels SPOT_KERNELS;
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_shares, &displace,    &push_off_neighbours, &correct,
+                              &find_within,         &farthest,        &find_reached};
+
+}  // namespace spot::kernels

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How grains go into messages and saved states.
+#pragma once
+
+#include "spot/base/bytes.hpp"
+#include "spot/packing/packing.hpp"
+
+namespace spot {
+
+inline void append(Bytes& bytes, const Grain& grain) {
+  append(bytes, grain.id);
+  append(bytes, grain.position);
+  append(bytes, grain.held);
+}
+
+inline Grain take_grain(ByteReader& reader) {
+  const auto id = reader.take<std::int64_t>();
+  const auto position = reader.take<Vector3>();
+  return {id, position, reader.take<bool>()};
+}
+
+}  // namespace spot

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/relaxation/relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spot {
+
+Relaxation::Relaxation(const RelaxationParameters& parameters) : parameters_(parameters) { parameters_.validate(); }
+
+double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, Push& push) const {
+  const double *x = packing.x(), *y = packing.y(), *z = packing.z();
+  const double xi = x[i], yi = y[i], zi = z[i];
+  const double d = packing.diameter(), parted = parameters_.distance_in_contact(d);
+  const Quantum& quantum = packing.quantum();
+  double least = d * d;
+  const auto [first, last] = packing.neighbours(i);
+  for (const std::uint32_t* j = first; j != last; ++j) {
+    const double dx = xi - x[*j], dy = yi - y[*j], dz = zi - z[*j];
+    const double squared = dx * dx + dy * dy + dz * dz;
+    if (squared >= d * d) continue;
+    least = std::min(least, squared);
+    if (squared >= parted * parted) continue;
+    const double share = is_movable_[*j] ? parameters_.pair_share() : parameters_.fixed_share();
+    const double distance = std::sqrt(squared);
+    if (distance == 0.0) {
+      // Centres that coincide have no line between them; part them along x, by id so that both agree.
+      push.x += quantum.round(packing.id(i) < packing.id(*j) ? -share * d : share * d);
+      continue;
+    }
+    const double scale = share * (parted - distance) / distance;
+    // Every push is rounded by itself: then their sum does not depend on the order of the neighbours.
+    push.x += quantum.round(scale * dx);
+    push.y += quantum.round(scale * dy);
+    push.z += quantum.round(scale * dz);
+  }
+  return least;
+}
+
+void Relaxation::push_off_walls(const Packing& packing, const Container& container, std::uint32_t i, Push& push) {
+  const double radius = 0.5 * packing.diameter();
+  const Quantum& quantum = packing.quantum();
+  container.contacts(packing.position(i), radius, contacts_);
+  for (const WallContact& contact : contacts_) {
+    const Vector3 off = parameters_.fixed_share() * (radius - contact.distance) * contact.normal;
+    push.x += quantum.round(off.x());
+    push.y += quantum.round(off.y());
+    push.z += quantum.round(off.z());
+  }
+}
+
+double Relaxation::sweep(Packing& packing, const Container& container, const std::vector<std::uint32_t>& movable) {
+  is_movable_.resize(packing.slots());
+  for (const std::uint32_t i : movable) is_movable_[i] = 1;
+  pushes_.assign(movable.size(), Push());
+  double least = packing.diameter() * packing.diameter();
+  for (std::size_t k = 0; k < movable.size(); ++k) {
+    least = std::min(least, push_off_neighbours(packing, movable[k], pushes_[k]));
+    if (packing.near_wall(movable[k])) push_off_walls(packing, container, movable[k], pushes_[k]);
+  }
+  for (std::size_t k = 0; k < movable.size(); ++k) {
+    is_movable_[movable[k]] = 0;
+    if (pushes_[k].x != 0.0 || pushes_[k].y != 0.0 || pushes_[k].z != 0.0)
+      packing.move(movable[k], pushes_[k].x, pushes_[k].y, pushes_[k].z);
+  }
+  return 1.0 - std::sqrt(least) / packing.diameter();
+}
+
+}  // namespace spot

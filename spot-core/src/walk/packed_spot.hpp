@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// How spots and moves go into messages and saved states.
+#pragma once
+
+#include "spot/base/bytes.hpp"
+#include "spot/walk/spot_walk.hpp"
+
+namespace spot {
+
+inline void append(Bytes& bytes, const Spot& spot) {
+  append(bytes, spot.id);
+  append(bytes, spot.steps);
+  append(bytes, spot.position);
+  append(bytes, spot.next_step);
+  append(bytes, spot.turn);
+  append(bytes, spot.chance);
+  append(bytes, spot.pace);
+}
+
+inline Spot take_spot(ByteReader& reader) {
+  Spot spot;
+  spot.id = reader.take<std::int64_t>();
+  spot.steps = reader.take<std::int64_t>();
+  spot.position = reader.take<Vector3>();
+  spot.next_step = reader.take<double>();
+  spot.turn = reader.take<double>();
+  spot.chance = reader.take<double>();
+  spot.pace = reader.take<double>();
+  return spot;
+}
+
+inline void append(Bytes& bytes, const Move& move) {
+  append(bytes, move.time);
+  append(bytes, move.spot);
+  append(bytes, move.middle);
+  append(bytes, move.step);
+  append(bytes, move.weight);
+  append(bytes, move.number);
+  append(bytes, move.chance);
+}
+
+inline Move take_move(ByteReader& reader) {
+  Move move;
+  move.time = reader.take<double>();
+  move.spot = reader.take<std::int64_t>();
+  move.middle = reader.take<Vector3>();
+  move.step = reader.take<Vector3>();
+  move.weight = reader.take<double>();
+  move.number = reader.take<std::int64_t>();
+  move.chance = reader.take<double>();
+  return move;
+}
+
+}  // namespace spot

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/walk/parameters.hpp"
+
+#include <cmath>
+
+#include "spot/base/elementary.hpp"
+#include "spot/base/errors.hpp"
+#include "spot/walk/dilation_field.hpp"
+
+namespace spot {
+
+namespace {
+
+/// In diameters; far from what makes a packing collapse.
+constexpr double largest_contact_overlap = 0.05;
+
+void require_positive(const char* name, double value) {
+  if (!(value > 0.0) || !std::isfinite(value))
+    throw InvalidParameter(message(name, " is ", value, " but must be positive and finite"));
+}
+
+}  // namespace
+
+double SpotParameters::spot_volume(double packing_fraction) const {
+  const double pi = 3.14159265358979323846;
+  return influence * mean_share() * packing_fraction * 4.0 / 3.0 * pi * radius * radius * radius;
+}
+
+double SpotParameters::missing_volume(double diameter) const {
+  const double pi = 3.14159265358979323846;
+  return fixed_volume > 0.0 ? influence * fixed_volume * pi / 6.0 * diameter * diameter * diameter : spot_volume(0.58);
+}
+
+double SpotParameters::fastest() const { return dilation > 0.0 ? speed * DilationField::fastest : speed; }
+
+double SpotParameters::equivalent_radius() const { return radius * cbrt(mean_share()); }
+
+void SpotParameters::validate() const {
+  require_positive("spot radius", radius);
+  require_positive("spot influence", influence);
+  if (influence >= 1.0) throw InvalidParameter(message("spot influence is ", influence, " but must be below 1"));
+  if (!(persistence >= 0.0 && persistence < 1.0))
+    throw InvalidParameter(message("spot persistence is ", persistence, " but must be from 0 to below 1"));
+  if (!(dilation >= 0.0 && dilation < 1.0))
+    throw InvalidParameter(message("spot dilation is ", dilation, " but must be from 0 (off) to below 1"));
+  if (dilation > 0.0 && together)
+    throw InvalidParameter(message("spot dilation is ", dilation, " but must be 0 for spots that step together"));
+  require_positive("spot step width", step_width);
+  require_positive("spot step height", step_height);
+  require_positive("spot speed", speed);
+  require_positive("spot injection rate", injection_rate);
+  if (!(fixed_volume >= 0.0) || !std::isfinite(fixed_volume))
+    throw InvalidParameter(message("fixed volume is ", fixed_volume, " grains but must be zero (off) or positive"));
+}
+
+double step_width_for(double diffusion_length, double step_height, double persistence) {
+  require_positive("spot diffusion length", diffusion_length);
+  require_positive("spot step height", step_height);
+  return std::sqrt(4.0 * diffusion_length * step_height * (1.0 - persistence) / (1.0 + persistence));
+}
+
+void RelaxationParameters::validate() const {
+  require_positive("relaxation alpha", alpha);
+  if (alpha >= 2.0) throw InvalidParameter(message("relaxation alpha is ", alpha, " but must be below 2"));
+  if (!(shell >= 0.0) || !std::isfinite(shell))
+    throw InvalidParameter(message("relaxation shell is ", shell, " but must be zero or positive"));
+  if (every < 0) throw InvalidParameter(message("relaxation interval is ", every, " but must be zero (never) or more"));
+  if (!(momentum >= 0.0 && momentum < 1.0))
+    throw InvalidParameter(message("relaxation momentum is ", momentum, " but must be from 0 to below 1"));
+  if (!(contact_overlap >= 0.0 && contact_overlap <= largest_contact_overlap))
+    throw InvalidParameter(message("overlap in contact is ", contact_overlap, " diameters but must be from 0 to ",
+                                   largest_contact_overlap));
+}
+
+}  // namespace spot

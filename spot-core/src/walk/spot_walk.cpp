@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/walk/spot_walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spot/base/elementary.hpp"
+#include "spot/base/random.hpp"
+
+namespace spot {
+
+namespace {
+
+std::array<double, 4> numbers_of_birth(const SpotParameters& p, std::int64_t id) {
+  return uniform(p.seed, RandomPurpose::birth, static_cast<std::uint64_t>(id), 0);
+}
+
+/// Numbers of the step to come: waiting time before it, its direction, a lot for others, and whether it turns at all.
+std::array<double, 4> numbers_of_step(const SpotParameters& p, const Spot& spot) {
+  return uniform(p.seed, RandomPurpose::step, static_cast<std::uint64_t>(spot.id),
+                 static_cast<std::uint64_t>(spot.steps));
+}
+
+/// One of the four vectors (+-dx, 0, dz), (0, +-dx, dz) (2006; trap: 2010 prints diagonals that spread twice as fast).
+Vector3 step_vector(const SpotParameters& p, double uniform) {
+  switch (static_cast<int>(4.0 * uniform)) {
+    case 0:
+      return {p.step_width, 0.0, p.step_height};
+    case 1:
+      return {-p.step_width, 0.0, p.step_height};
+    case 2:
+      return {0.0, p.step_width, p.step_height};
+    default:
+      return {0.0, -p.step_width, p.step_height};
+  }
+}
+
+/// The number that gives the step to the other side.
+double opposite(double uniform) {
+  const bool odd = static_cast<int>(4.0 * uniform) % 2 == 1;
+  return odd ? uniform - 0.25 : uniform + 0.25;
+}
+
+}  // namespace
+
+SpotWalk::SpotWalk(const SpotParameters& parameters, const Container& container) : parameters_(parameters) {
+  parameters_.validate();
+  container.require_entrance(parameters_.equivalent_radius());
+}
+
+double SpotWalk::time_before_birth(std::int64_t id) const {
+  return exponential(numbers_of_birth(parameters_, id)[0], parameters_.injection_rate);
+}
+
+Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) const {
+  const auto numbers = numbers_of_birth(parameters_, id);
+  const Orifice& orifice = container.orifice();
+  const double from_axis = std::max(0.0, orifice.radius - parameters_.radius) * std::sqrt(numbers[1]);
+  Spot spot{id, 0, orifice.centre, time};
+  spot.position +=
+      Vector3(from_axis * cos_of_turns(numbers[2]), from_axis * sin_of_turns(numbers[2]), -parameters_.radius);
+  draw_next_step(spot);
+  return spot;
+}
+
+void SpotWalk::draw_next_step(Spot& spot) const {
+  const auto numbers = numbers_of_step(parameters_, spot);
+  if (spot.steps == 0 || numbers[3] >= parameters_.persistence) spot.turn = numbers[1];
+  spot.chance = numbers[2];
+  const double mean = parameters_.mean_waiting_time();
+  if (!parameters_.together)
+    spot.next_step += exponential(numbers[0], parameters_.move_rate()) / spot.pace;
+  else if (spot.steps == 0)
+    spot.next_step = (std::floor(spot.next_step / mean) + 1.0) * mean;
+  else
+    spot.next_step = std::nearbyint(spot.next_step / mean + 1.0) * mean;
+}
+
+void SpotWalk::set_pace(Spot& spot, double time, double pace) const {
+  spot.next_step = time + (spot.next_step - time) * (spot.pace / pace);
+  spot.pace = pace;
+}
+
+Move SpotWalk::step(Spot& spot, const Container& container) const {
+  Move move;
+  move.time = spot.next_step;
+  move.spot = spot.id;
+  const Vector3 start = spot.position, target = start + step_vector(parameters_, spot.turn);
+  spot.position = container.keep_spot_inside(start, target);
+  // A spot that a wall has reflected goes on away from it, if it goes on its way.
+  if (spot.position != target) spot.turn = opposite(spot.turn);
+  move.middle = 0.5 * (start + spot.position);
+  move.step = spot.position - start;
+  move.number = ++spot.steps;
+  move.chance = spot.chance;
+  draw_next_step(spot);
+  return move;
+}
+
+}  // namespace spot
