@@ -137,6 +137,28 @@ TEST_P(GrainChangesInvariance, RanksAndRestartsChangeNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Ranks, GrainChangesInvariance, testing::Values(1, 2, 3, 6));
 
+/// Two layers of the packing go, just below where two of the ranks meet: whoever stood on them comes down.
+TEST(GrainChangesInvariance, WhoeverLosesItsGroundOnAnotherRankComesDown) {
+  const auto rest = [](int ranks) {
+    Places outcome;
+    std::mutex mutex;
+    scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
+      const bool brings = communicator->rank() == 0;
+      const auto drainage = windowed(brings ? filling() : std::vector<Grain>{}, communicator);
+      GrainChanges changes;
+      for (const Grain& grain : filling())
+        if (brings && grain.position.z() >= 5.0 && grain.position.z() < 6.5) changes.gone.push_back(grain.id);
+      drainage->change_grains(changes);
+      const std::lock_guard<std::mutex> lock(mutex);
+      for (const auto& [id, grain] : places(*drainage)) outcome.emplace(id, grain);
+    });
+    return outcome;
+  };
+  const Places alone = rest(1);
+  for (const auto& [id, grain] : alone) EXPECT_LT(grain.position.z(), 13.5) << id << " has not come down";
+  EXPECT_TRUE(rest(6) == alone);
+}
+
 /// Momenta and accounts of all others stay: a grain that lies where nobody comes by changes nothing when it goes.
 TEST(GrainChangesInvariance, OthersGoOnAsIfNothingHadHappened) {
   auto grains = filling();

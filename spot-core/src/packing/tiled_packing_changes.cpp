@@ -36,7 +36,7 @@ void TiledPacking::change(const std::vector<std::int64_t>& gone, const std::vect
   }
   cover(incoming, container);
   incoming = take_own(incoming);
-  if (!all_gone.empty()) take_out_going();
+  if (!all_gone.empty()) take_out_going(container);
   require_new_ids(incoming);
   std::vector<Place> places;
   for (const Grain& grain : incoming) {
@@ -106,9 +106,19 @@ std::vector<Grain> TiledPacking::stay_under_other_ids(const std::vector<Grain>& 
   return others;
 }
 
-void TiledPacking::take_out_going() {
+/// They fall out of the packing, so that the ranks below and above learn which of their grains have lost a neighbour.
+void TiledPacking::take_out_going(const Container& container) {
+  const auto goes = [this](std::uint32_t slot) { return occupied(slot) && ids_[slot] == going; };
   for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot) {
-    if (!occupied(slot) || ids_[slot] != going) continue;
+    if (!goes(slot)) continue;
+    points_[slot].state = Point::falling;
+    note_change(slot);
+  }
+  choose_sent(no_cell);
+  exchange_border(container);
+  note_above_falling_copies();
+  for (std::uint32_t slot = first_owned() * capacity_; slot < last_owned() * capacity_; ++slot) {
+    if (!goes(slot)) continue;
     note_neighbours_above(slot);
     unlist(slot);
     vacate(slot);

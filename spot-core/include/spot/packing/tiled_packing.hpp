@@ -284,7 +284,7 @@ class TiledPacking {
   std::vector<std::int64_t> of_all_ranks(const std::vector<std::int64_t>& ids) const;
   void mark_going(const std::unordered_set<std::int64_t>& gone);
   std::vector<Grain> stay_under_other_ids(const std::vector<Grain>& come);
-  void take_out_going();
+  void take_out_going(const Container& container);
   void require_within_extent(const std::vector<Grain>& come) const;
   void require_new_ids(const std::vector<Grain>& incoming) const;
 
