@@ -9,11 +9,13 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "read_grains.hpp"
 #include "spot/packing/tiled_packing.hpp"
+#include "spot/relaxation/cell_relaxation.hpp"
 #include "spot/walk/spot_walk.hpp"
 
 namespace {
@@ -34,7 +36,7 @@ const std::vector<spot::Grain>& grains() {
 
 /// Cells of 1.5 d with eight slots each, x fastest, and lists of the neighbours within 1.5 d.
 struct Tiles {
-  static constexpr std::uint32_t slots = 8, list_capacity = 16;
+  static constexpr std::uint32_t slots = 8, list_capacity = spot::kernels::lanes;
   static constexpr double edge = 1.5, reach = 1.5;
 
   std::array<int, 3> cells = {};
@@ -42,6 +44,7 @@ struct Tiles {
   spot::AlignedVector<Point> points;
   std::vector<std::uint32_t> grains;  // slots of them
   spot::AlignedVector<std::uint32_t> lists;
+  std::vector<std::uint32_t> blocks;
   std::vector<std::uint8_t> list_size;
 
   Tiles() {
@@ -50,6 +53,8 @@ struct Tiles {
     points.assign(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]) * slots, Point{0, 0, 0, Point::empty});
     lists.assign(points.size() * list_capacity, 0);
     list_size.assign(points.size(), 0);
+    blocks.resize(points.size());
+    std::iota(blocks.begin(), blocks.end(), 0u);
     for (const spot::Grain& grain : ::grains()) {
       const std::uint32_t first = cell(grain.position) * slots;
       for (std::uint32_t slot = first; slot < first + slots; ++slot)
@@ -190,7 +195,7 @@ void push_off_neighbours(benchmark::State& state, const Kernels& kernels) {
   grains.resize(grains.size() + spot::kernels::ahead, 0);
   for (auto _ : state) {
     kernels.push_off_neighbours(all.points.data(), grains.data(), all.grains.size(),
-                                {all.lists.data(), all.list_size.data(), Tiles::list_capacity},
+                                {all.lists.data(), all.blocks.data(), all.list_size.data()},
                                 {static_cast<float>(1.0 / (quanta * quanta)), 0.4f, 0.8f}, pushes.data());
     benchmark::DoNotOptimize(pushes.data());
     benchmark::ClobberMemory();
@@ -270,8 +275,9 @@ void sweep_over_all(benchmark::State& state) {
   parameters.alpha = 1.2;
   parameters.momentum = 0.7;
   std::size_t swept = 0;
-  for (auto _ : state)  // with 0 moves every cell is due
-    swept += silo.packing.sweep(parameters, 0, 1.0, *silo.container, silo.workers);
+  spot::CellRelaxation relaxation(silo.packing, parameters);
+  for (auto _ : state)  // of all cells
+    swept += relaxation.sweep(0, 1.0, *silo.container, silo.workers);
   state.SetItemsProcessed(static_cast<std::int64_t>(swept));
   state.counters["bytes_per_grain"] =
       static_cast<double>(silo.packing.memory()) / static_cast<double>(silo.packing.size());

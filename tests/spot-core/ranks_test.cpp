@@ -181,7 +181,7 @@ TEST(BalanceInvariance, LayersGoWhereTheWorkIsAndNothingElseChanges) {
         std::vector<spot::Move> moves = rounds[round];
         packing.displace(
             moves, {2.6, 5e-3}, [](const auto&, auto&) {}, *silo, workers);
-        packing.sweep({}, 2, 0.02, *silo, workers);
+        spot::CellRelaxation(packing, {}).sweep(2, 0.02, *silo, workers);
         if (balance && round % 10 == 9 && packing.balance(*silo) && communicator->rank() == 0) ++changes;
       }
       double top = 0.0;

@@ -7,6 +7,7 @@
 
 #include "packing/packed_grain.hpp"
 #include "spot/packing/displacement.hpp"
+#include "spot/relaxation/settling.hpp"
 
 namespace spot {
 
@@ -138,15 +139,15 @@ void TimeOrderedDrainage::take_out_drained() {
 
 Overlap TimeOrderedDrainage::carry_out(const GrainChanges& changes) {
   TiledPacking tiled(packing_.diameter(), packing_.extent(), limits_.outlet, packing_.grains(), container());
-  tiled.change(changes.gone, changes.come, container());
+  const Overlap largest = tiled.change(changes.gone, changes.come, container());
   const std::set<std::int64_t> gone(changes.gone.begin(), changes.gone.end());
   std::vector<Grain> grains;
   for (const Grain& grain : packing_.grains())
     if (gone.count(grain.id) == 0) grains.push_back(grain);
   grains.insert(grains.end(), changes.come.begin(), changes.come.end());
   packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
-  if (tiled.largest_overlap_of_new().depth <= limits_.largest_overlap) let_settle(tiled, false);
-  return tiled.largest_overlap_of_new();
+  if (largest.depth <= limits_.largest_overlap) let_settle(tiled, false);
+  return largest;
 }
 
 /// In the cells of the windowed driver, whose quantum is a multiple of the one here.
@@ -154,8 +155,8 @@ void TimeOrderedDrainage::let_settle(TiledPacking& tiled, bool everybody) {
   Workers alone(1);
   std::map<std::int64_t, Vector3> before;
   tiled.visit_grains([&](const Grain& grain) { before[grain.id] = grain.position; });
-  if (tiled.settle(everybody, parameters_.seed, relaxation_parameters_.contact_overlap, container(), alone) == 0)
-    return;
+  Settling settling(tiled, parameters_.seed, relaxation_parameters_.contact_overlap, container(), alone);
+  if (settling.run(everybody) == 0) return;
   std::map<std::int64_t, Vector3> moved;
   tiled.visit_grains([&](const Grain& grain) {
     if (grain.position != before[grain.id]) moved[grain.id] = grain.position;

@@ -7,6 +7,7 @@
 
 #include "spot/base/errors.hpp"
 #include "spot/base/memory.hpp"
+#include "spot/relaxation/settling.hpp"
 
 namespace spot {
 
@@ -94,10 +95,11 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       window_(positive_window(window)),
       due_(moves_until_due(spots, relaxation.tolerance, diameter)),
       packing_(diameter, extent, limits.outlet, grains, *container_, communicator_),
+      relaxation_(packing_, relaxation),
       walk_(spots, *container_),
       dilation_(spots, *container_, diameter) {
   next_birth_ = walk_.time_before_birth(0);
-  TiledPacking::require_radius(spots.radius, diameter);
+  BlockMoves::require_radius(spots.radius, diameter);
   require_fitting_window();
   require_valid_start();
   let_settle(true);
@@ -206,7 +208,7 @@ std::vector<Spot> WindowedDrainage::spots() const {
 }
 
 std::size_t WindowedDrainage::memory() const {
-  return packing_.memory() + dilation_.memory() + bytes_in(walkers_, turns_, moves_);
+  return packing_.memory() + relaxation_.memory() + dilation_.memory() + bytes_in(walkers_, turns_, moves_);
 }
 
 void WindowedDrainage::relax() {
@@ -214,11 +216,11 @@ void WindowedDrainage::relax() {
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     // Once a window only: a cell that is swept over and over on its own is pushed into its neighbours.
     const double deepest = sweep == 0 ? deepest_overlap : std::numeric_limits<double>::infinity();
-    const std::size_t swept = packing_.sweep(relaxation_parameters_, due_, deepest, container(), *workers_);
+    const std::size_t swept = relaxation_.sweep(due_, deepest, container(), *workers_);
     if (swept == 0) break;
     ++counters_.sweeps;
     counters_.grains_swept += static_cast<std::int64_t>(swept);
-    overlap = std::max(overlap, packing_.overlap_swept());
+    overlap = std::max(overlap, relaxation_.largest_overlap());
   }
   // Sweeps do not see cells that are not due.
   if (overlap > overlap_allowed() || windows_ % windows_between_looks == 0)
@@ -226,14 +228,13 @@ void WindowedDrainage::relax() {
 }
 
 Overlap WindowedDrainage::carry_out(const GrainChanges& changes) {
-  packing_.change(changes.gone, changes.come, container());
-  const Overlap largest = packing_.largest_overlap_of_new();
+  const Overlap largest = packing_.change(changes.gone, changes.come, container());
   if (communicator_->least(std::vector<double>{-largest.depth})[0] >= -limits_.largest_overlap) let_settle(false);
   return largest;
 }
 
 void WindowedDrainage::let_settle(bool everybody) {
-  packing_.settle(everybody, parameters_.seed, relaxation_parameters_.contact_overlap, container(), *workers_);
+  Settling(packing_, parameters_.seed, relaxation_parameters_.contact_overlap, container(), *workers_).run(everybody);
 }
 
 void WindowedDrainage::replace_container(std::shared_ptr<const Container> container) {

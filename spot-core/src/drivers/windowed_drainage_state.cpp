@@ -69,9 +69,10 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       window_(positive_window(window)),
       due_(moves_until_due(spots, relaxation.tolerance, diameter)),
       packing_(diameter, extent, read(saved), *container_, communicator_),
+      relaxation_(packing_, relaxation),
       walk_(spots, *container_),
       dilation_(spots, *container_, diameter) {
-  TiledPacking::require_radius(spots.radius, diameter);
+  BlockMoves::require_radius(spots.radius, diameter);
   require_fitting_window();
   keep_own_spots();
 }

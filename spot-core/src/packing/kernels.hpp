@@ -16,11 +16,12 @@ constexpr std::uint32_t pack = 4, lanes = 16;
 /// go on with as many that are fetched and not used.
 constexpr std::uint32_t ahead = 8;
 
-/// Lists of neighbours: `capacity` places a point, `size` of them in use; the others hold any valid index.
+/// Lists of neighbours: that of a point begins with a `block` of `lanes` entries, and has `size` of them; what follows
+/// in the last block is any valid index.
 struct Lists {
   const std::uint32_t* neighbours;
+  const std::uint32_t* block;
   const std::uint8_t* size;
-  std::uint32_t capacity;
 };
 
 /// How grains push each other apart.

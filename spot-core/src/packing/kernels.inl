@@ -19,6 +19,11 @@ constexpr float parts = spot::whole_share;
 /// Differences of states are seen only where an empty place is on one side.
 constexpr std::int32_t only_empty = Point::empty;
 
+/// Here and not inline in a header: no code of one build may be linked into another.
+inline const std::uint32_t* list_of(const Lists& lists, std::uint32_t point) {
+  return lists.neighbours + static_cast<std::size_t>(lists.block[point]) * spot::kernels::lanes;
+}
+
 #ifndef __AVX2__
 
 float square(std::int32_t difference) { return static_cast<float>(difference) * static_cast<float>(difference); }
@@ -75,7 +80,7 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
                          const spot::kernels::Push& push, Point* pushes) {
   for (std::size_t i = 0; i < n; ++i) {
     const Point& own = points[grains[i]];
-    const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
+    const std::uint32_t* list = list_of(lists, grains[i]);
     Point sum = {0, 0, 0, 0};
     float depth = 0.0f;
     for (std::uint32_t k = 0; k < lists.size[grains[i]]; ++k) {
@@ -328,8 +333,8 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
     const Pack x = all(own.x), y = all(own.y), z = all(own.z);
     Pack push_x = {}, push_y = {}, push_z = {};
     Floats depth = zero;
-    const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
-    __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i + ahead]) * lists.capacity);
+    const std::uint32_t* list = list_of(lists, grains[i]);
+    __builtin_prefetch(list_of(lists, grains[i + ahead]));
     const std::int32_t size = lists.size[grains[i]];
     for (std::int32_t k = 0; k < size; k += static_cast<std::int32_t>(width), list += width) {
       // As many points as a pack has numbers, turned into their x, y, z and states.

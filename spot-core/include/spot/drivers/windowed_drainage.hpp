@@ -8,6 +8,7 @@
 #include "spot/drivers/drainage.hpp"
 #include "spot/packing/tiled_packing.hpp"
 #include "spot/parallel/communicator.hpp"
+#include "spot/relaxation/cell_relaxation.hpp"
 #include "spot/walk/dilation_field.hpp"
 
 namespace spot {
@@ -105,6 +106,7 @@ class WindowedDrainage : public Drainage {
   std::int64_t born_ = 0, windows_ = 0;
   double next_birth_ = 0.0;
   TiledPacking packing_;
+  CellRelaxation relaxation_;
   SpotWalk walk_;
   DilationField dilation_;
 
