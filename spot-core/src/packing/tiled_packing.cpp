@@ -157,7 +157,7 @@ Vector3 TiledPacking::from_low(const Point& point, const Cell& at) const {
 }
 
 Grain TiledPacking::grain(std::uint32_t slot) const {
-  return {ids_[slot], position(slot), points_[slot].state == Point::held};
+  return {ids_[slot], position(slot), points_[slot].state == Point::held, 0.5 * diameter_};
 }
 
 int TiledPacking::cell_coordinate(double from_low, int axis) const {

@@ -9,27 +9,11 @@
 #include "spot/base/quantum.hpp"
 #include "spot/geometry/container.hpp"
 #include "spot/packing/cell_grid.hpp"
+#include "spot/packing/grain.hpp"
 
 namespace spot {
 
-/// One grain as it goes into and comes out of a packing.
-struct Grain {
-  std::int64_t id;  ///< 0 or more
-  Vector3 position;
-  bool held = false;  ///< an obstacle: never moves, others are pushed off it
-
-  bool operator==(const Grain& other) const {
-    return id == other.id && position == other.position && held == other.held;
-  }
-};
-
-/// The largest overlap of two grains and whose it is.
-struct Overlap {
-  double depth = 0.0;  ///< 1 - distance / diameter; 0 when no two grains overlap
-  std::int64_t first = 0, second = 0;
-};
-
-/// Equal spheres and the lists of their neighbours.
+/// Spheres and the lists of their neighbours.
 ///
 /// Layout: structure of arrays. Every grain has a *reference*, the place where it was listed last; cells and
 /// lists follow from the references alone: j is a neighbour of i exactly if their references are closer than
@@ -39,9 +23,9 @@ struct Overlap {
 /// Positions are multiples of `quantum()`; nothing computed here depends on the order of the grains.
 class Packing {
  public:
-  /// `extent` is the largest coordinate (absolute value) a grain may ever have; it sets the quantum.
-  /// Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, or an id is negative
-  /// or occurs twice.
+  /// `diameter`: of the largest grains. `extent` is the largest coordinate (absolute value) a grain may ever have; both
+  /// set the quantum. Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, a
+  /// radius is not as radius_in() has it, or an id is negative or occurs twice.
   Packing(double diameter, double extent, const std::vector<Grain>& grains);
 
   double diameter() const { return diameter_; }
@@ -51,6 +35,7 @@ class Packing {
 
   /// All grains, in increasing order of ids.
   std::vector<Grain> grains() const;
+  Grain grain(std::size_t i) const { return {ids_[i], position(i), held(i), radii_[i]}; }
 
   /// Sorts the grains in memory when that has become worth while; indices change, lists are up to date.
   void refresh(const Container& container) {
@@ -71,6 +56,7 @@ class Packing {
   bool present(std::size_t i) const { return cell_[i] != nowhere; }
   std::int64_t id(std::size_t i) const { return ids_[i]; }
   Vector3 position(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
+  double radius(std::size_t i) const { return radii_[i]; }
   bool held(std::size_t i) const { return held_[i] != 0; }
   bool near_wall(std::size_t i) const { return near_wall_[i] != 0; }
   const double* x() const { return x_.data(); }
@@ -129,7 +115,7 @@ class Packing {
   Quantum quantum_;
   double half_skin_;
   std::vector<std::int64_t> ids_;
-  std::vector<double> x_, y_, z_;
+  std::vector<double> x_, y_, z_, radii_;
   std::vector<double> reference_x_, reference_y_, reference_z_;
   std::vector<char> held_, near_wall_;
   std::size_t removed_ = 0;
