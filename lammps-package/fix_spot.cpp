@@ -380,7 +380,10 @@ void FixSpot::make_container() {
 ------------------------------------------------------------------------- */
 
 spot::Grain FixSpot::grain_of_lammps(int i) const {
-  return {atom->tag[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]}, (atom->mask[i] & groupbit) == 0};
+  return {atom->tag[i],
+          {atom->x[i][0], atom->x[i][1], atom->x[i][2]},
+          (atom->mask[i] & groupbit) == 0,
+          0.5 * model->diameter};
 }
 
 std::vector<spot::Grain> FixSpot::grains_of_lammps() const {

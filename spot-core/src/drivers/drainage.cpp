@@ -126,6 +126,7 @@ void Drainage::replace_grains(const std::vector<Grain>& grains) {
   visit_grains([&](const Grain& grain) { old.emplace(grain.id, grain); });
   for (Grain grain : grains) {
     for (double& at : grain.position) at = quantum().snap(at);
+    grain.radius = radius_in(diameter_, grain);
     const auto same = old.find(grain.id);
     if (same != old.end() && same->second == grain)
       old.erase(same);

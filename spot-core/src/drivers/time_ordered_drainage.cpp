@@ -175,7 +175,7 @@ void TimeOrderedDrainage::replace_container(std::shared_ptr<const Container> con
 
 void TimeOrderedDrainage::visit_grains(const std::function<void(const Grain&)>& visit) const {
   for (std::size_t i = 0; i < packing_.slots(); ++i)
-    if (packing_.present(i)) visit({packing_.id(i), packing_.position(i), packing_.held(i)});
+    if (packing_.present(i)) visit(packing_.grain(i));
 }
 
 Overlap TimeOrderedDrainage::largest_overlap() {

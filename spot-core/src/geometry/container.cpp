@@ -10,6 +10,21 @@ namespace spot {
 
 namespace {
 
+/// The shares of a straight path at which it passes from cell to cell, in increasing order, and 1 for its end.
+std::vector<double> ends_of_pieces(const Periodic& periodic, const Vector3& from, const Vector3& to) {
+  std::vector<double> ends = {1.0};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!periodic.along(axis) || from[axis] == to[axis]) continue;
+    const double least = std::min(from[axis], to[axis]), most = std::max(from[axis], to[axis]);
+    double border =
+        periodic.low(axis) + std::ceil((least - periodic.low(axis)) / periodic.length(axis)) * periodic.length(axis);
+    for (; border < most; border += periodic.length(axis))
+      if (border > least) ends.push_back((border - from[axis]) / (to[axis] - from[axis]));
+  }
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
 /// std::hypot guards against overflow, which lengths here are far from, and costs ten times as much.
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
@@ -39,6 +54,11 @@ Vector3 Container::keep_spot_inside(const Vector3& start, const Vector3& target)
   if (const auto end = reflect_spot(start, target)) return *end;
   const Vector3 upwards(start.x(), start.y(), target.z());
   return first_wall(start, upwards) ? start : upwards;
+}
+
+const Periodic& Container::periodic() const {
+  static const Periodic none;
+  return none;
 }
 
 const std::vector<AxisPlane>& Container::axis_planes() const {
@@ -146,21 +166,46 @@ WalledContainer::WalledContainer(const Orifice& orifice) : orifice_(orifice) {
 void WalledContainer::add(std::unique_ptr<Wall> wall, double spot_buffer) {
   if (!(spot_buffer >= 0.0) || !std::isfinite(spot_buffer))
     throw InvalidContainer(message("spot buffer is ", spot_buffer, " but must be zero or positive"));
-  if (const auto plane = wall->axis_plane()) axis_planes_.push_back(*plane);
+  if (const auto plane = wall->axis_plane()) {
+    require_no_period_across(*plane);
+    axis_planes_.push_back(*plane);
+  }
   walls_.push_back({std::move(wall), spot_buffer});
 }
 
-bool WalledContainer::contains(const Vector3& centre) const {
+void WalledContainer::require_no_period_across(const AxisPlane& plane) const {
+  if (periodic_.along(plane.axis))
+    throw InvalidContainer(message("a wall across ", "xyz"[plane.axis], " at ", plane.at,
+                                   " stands in the way of a container that repeats along that axis"));
+}
+
+void WalledContainer::repeat(const Periodic& periodic) {
+  for (int axis = 0; axis < 2; ++axis)
+    if (orifice_.centre[axis] - orifice_.radius < periodic.low(axis) ||
+        orifice_.centre[axis] + orifice_.radius > periodic.high(axis))
+      throw InvalidContainer(message("orifice of radius ", orifice_.radius, " at ", "xy"[axis], " = ",
+                                     orifice_.centre[axis], " reaches out of the cell that repeats, from ",
+                                     periodic.low(axis), " to ", periodic.high(axis)));
+  periodic_ = periodic;
+  for (const AxisPlane& plane : axis_planes_) require_no_period_across(plane);
+}
+
+bool WalledContainer::contains(const Vector3& place) const {
+  const Vector3 centre = periodic_.wrap(place);
   return std::all_of(walls_.begin(), walls_.end(),
                      [&](const Bounded& b) { return b.wall->nearest(centre).distance >= 0.0; }) &&
          centre.z() >= orifice_.centre.z();
 }
 
-bool WalledContainer::may_have_left_to(const Vector3& centre) const {
+bool WalledContainer::may_have_left_to(const Vector3& place) const {
+  // Below the orifice grains may have gone on into the next cell: to the image nearest to its axis.
+  const Vector3 centre =
+      periodic_.any() ? orifice_.centre + periodic_.nearest(Vector3(place - orifice_.centre)) : place;
   return std::all_of(walls_.begin(), walls_.end(), [&](const Bounded& b) { return b.wall->may_have_left_to(centre); });
 }
 
-void WalledContainer::contacts(const Vector3& centre, double reach, WallContacts& contacts) const {
+void WalledContainer::contacts(const Vector3& place, double reach, WallContacts& contacts) const {
+  const Vector3 centre = periodic_.wrap(place);
   contacts.clear();
   for (const Bounded& b : walls_) {
     const WallContact contact = b.wall->nearest(centre);
@@ -168,7 +213,8 @@ void WalledContainer::contacts(const Vector3& centre, double reach, WallContacts
   }
 }
 
-void WalledContainer::other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const {
+void WalledContainer::other_contacts(const Vector3& place, double reach, WallContacts& contacts) const {
+  const Vector3 centre = periodic_.wrap(place);
   contacts.clear();
   for (const Bounded& b : walls_) {
     if (b.wall->axis_plane()) continue;
@@ -178,6 +224,22 @@ void WalledContainer::other_contacts(const Vector3& centre, double reach, WallCo
 }
 
 std::optional<WallOnPath> WalledContainer::first_wall(const Vector3& from, const Vector3& to) const {
+  if (!periodic_.any()) return first_wall_in_cell(from, to);
+  double begin = 0.0;
+  for (const double end : ends_of_pieces(periodic_, from, to)) {
+    const Vector3 first = from + begin * (to - from), last = end == 1.0 ? to : from + end * (to - from);
+    const Vector3 middle = 0.5 * (first + last), into_cell = periodic_.wrap(middle) - middle;
+    if (auto wall = first_wall_in_cell(first + into_cell, last + into_cell)) {
+      wall->share = begin + wall->share * (end - begin);
+      return wall;
+    }
+    begin = end;
+  }
+  return std::nullopt;
+}
+
+/// Of a path in the cell. Walls go on beyond it.
+std::optional<WallOnPath> WalledContainer::first_wall_in_cell(const Vector3& from, const Vector3& to) const {
   const bool rises = from.z() < orifice_.centre.z();
   const auto passed = orifice_.passed_at(from, to);
   if (rises && !passed) return std::nullopt;
@@ -194,6 +256,14 @@ std::optional<WallOnPath> WalledContainer::first_wall(const Vector3& from, const
 }
 
 std::optional<Vector3> WalledContainer::reflect_spot(const Vector3& start, const Vector3& target) const {
+  if (!periodic_.any()) return reflect_in_cell(start, target);
+  const Vector3 into_cell = periodic_.wrap(target) - target;
+  auto end = reflect_in_cell(start + into_cell, target + into_cell);
+  if (end) *end -= into_cell;
+  return end;
+}
+
+std::optional<Vector3> WalledContainer::reflect_in_cell(const Vector3& start, const Vector3& target) const {
   // A reflection can lead into the next wall's buffer; in a corner or a narrow gap a few rounds settle it.
   constexpr int rounds = 8;
   Vector3 position = target;

@@ -127,7 +127,7 @@ void Cells::note_change(std::uint32_t slot) {
 
 // ---- the rest
 
-Grain Cells::grain(std::uint32_t slot) const { return {ids[slot], position(slot), points[slot].state == Point::held}; }
+Grain Cells::grain(std::uint32_t slot) const { return {ids[slot], position(slot), points[slot].state == Point::held, 0.5 * lattice_.diameter()}; }
 
 std::vector<std::int64_t> Cells::grains_in_own_layers() const {
   std::vector<std::int64_t> grains(static_cast<std::size_t>(own_layers()), 0);

@@ -39,6 +39,7 @@ Packing::Packing(double diameter, double extent, const std::vector<Grain>& grain
     x_.push_back(quantum_.snap(grain.position.x()));
     y_.push_back(quantum_.snap(grain.position.y()));
     z_.push_back(quantum_.snap(grain.position.z()));
+    radii_.push_back(radius_in(diameter, grain));
     held_.push_back(grain.held ? 1 : 0);
   }
   std::vector<std::int64_t> sorted = ids_;
@@ -52,7 +53,7 @@ std::vector<Grain> Packing::grains() const {
   std::vector<Grain> all;
   all.reserve(size());
   for (std::size_t i = 0; i < slots(); ++i)
-    if (present(i)) all.push_back({ids_[i], position(i), held(i)});
+    if (present(i)) all.push_back(grain(i));
   std::sort(all.begin(), all.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
   return all;
 }
@@ -61,7 +62,7 @@ Grain Packing::remove(std::uint32_t i) {
   unlist(i);
   cell_[i] = nowhere;
   ++removed_;
-  return {ids_[i], position(i), held(i)};
+  return grain(i);
 }
 
 void Packing::find_movable(const Vector3& point, double reach, std::vector<std::uint32_t>& found) const {
@@ -109,6 +110,7 @@ void Packing::sort(const Container& container) {
   reorder(order, x_);
   reorder(order, y_);
   reorder(order, z_);
+  reorder(order, radii_);
   reorder(order, held_);
 
   const std::size_t n = order.size();
@@ -209,8 +211,8 @@ Overlap Packing::largest_overlap(const std::vector<std::uint32_t>& grains) const
 }
 
 std::size_t Packing::memory() const {
-  return bytes_in(ids_, x_, y_, z_, reference_x_, reference_y_, reference_z_, held_, near_wall_, cell_, neighbours_,
-                  list_size_, wandered_) +
+  return bytes_in(ids_, x_, y_, z_, radii_, reference_x_, reference_y_, reference_z_, held_, near_wall_, cell_,
+                  neighbours_, list_size_, wandered_) +
          grid_.memory();
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "spot/base/vector.hpp"
+#include "spot/geometry/periodic.hpp"
 
 namespace spot {
 
@@ -81,6 +82,9 @@ class Container {
   virtual bool concurrent() const { return true; }
 
   virtual const Orifice& orifice() const = 0;
+
+  /// Along which axes space repeats. All questions may be asked of places in any of its cells.
+  virtual const Periodic& periodic() const;
 
   /// May a grain that is here now, below the orifice, have come out of it? Else it went through a wall.
   virtual bool may_have_left_to(const Vector3&) const { return true; }
@@ -175,6 +179,12 @@ class WalledContainer : public Container {
 
   void add(std::unique_ptr<Wall> wall, double spot_buffer);
 
+  /// Space repeats like this from now on. Walls are those of the cell: where one meets an end of it, it has to go on in
+  /// the next cell as it does in space. Throws InvalidContainer if the orifice reaches out of the cell, or a flat wall
+  /// stands across an axis along which it repeats.
+  void repeat(const Periodic& periodic);
+  const Periodic& periodic() const override { return periodic_; }
+
   bool contains(const Vector3& centre) const override;
   void contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
   const std::vector<AxisPlane>& axis_planes() const override { return axis_planes_; }
@@ -190,7 +200,12 @@ class WalledContainer : public Container {
     std::unique_ptr<Wall> wall;
     double spot_buffer;
   };
+  void require_no_period_across(const AxisPlane& plane) const;
+  std::optional<Vector3> reflect_in_cell(const Vector3& start, const Vector3& target) const;
+  std::optional<WallOnPath> first_wall_in_cell(const Vector3& from, const Vector3& to) const;
+
   Orifice orifice_;
+  Periodic periodic_;
   std::vector<Bounded> walls_;
   std::vector<AxisPlane> axis_planes_;  // some of them once more
 };

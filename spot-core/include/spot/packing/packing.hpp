@@ -13,7 +13,7 @@
 
 namespace spot {
 
-/// Equal spheres and the lists of their neighbours.
+/// Spheres and the lists of their neighbours.
 ///
 /// Layout: structure of arrays. Every grain has a *reference*, the place where it was listed last; cells and
 /// lists follow from the references alone: j is a neighbour of i exactly if their references are closer than
@@ -23,9 +23,9 @@ namespace spot {
 /// Positions are multiples of `quantum()`; nothing computed here depends on the order of the grains.
 class Packing {
  public:
-  /// `extent` is the largest coordinate (absolute value) a grain may ever have; it sets the quantum.
-  /// Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, or an id is negative
-  /// or occurs twice.
+  /// `diameter`: of the largest grains. `extent` is the largest coordinate (absolute value) a grain may ever have; both
+  /// set the quantum. Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, a
+  /// radius is not as radius_in() has it, or an id is negative or occurs twice.
   Packing(double diameter, double extent, const std::vector<Grain>& grains);
 
   double diameter() const { return diameter_; }
@@ -35,6 +35,7 @@ class Packing {
 
   /// All grains, in increasing order of ids.
   std::vector<Grain> grains() const;
+  Grain grain(std::size_t i) const { return {ids_[i], position(i), held(i), radii_[i]}; }
 
   /// Sorts the grains in memory when that has become worth while; indices change, lists are up to date.
   void refresh(const Container& container) {
@@ -55,6 +56,7 @@ class Packing {
   bool present(std::size_t i) const { return cell_[i] != nowhere; }
   std::int64_t id(std::size_t i) const { return ids_[i]; }
   Vector3 position(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
+  double radius(std::size_t i) const { return radii_[i]; }
   bool held(std::size_t i) const { return held_[i] != 0; }
   bool near_wall(std::size_t i) const { return near_wall_[i] != 0; }
   const double* x() const { return x_.data(); }
@@ -113,7 +115,7 @@ class Packing {
   Quantum quantum_;
   double half_skin_;
   std::vector<std::int64_t> ids_;
-  std::vector<double> x_, y_, z_;
+  std::vector<double> x_, y_, z_, radii_;
   std::vector<double> reference_x_, reference_y_, reference_z_;
   std::vector<char> held_, near_wall_;
   std::size_t removed_ = 0;
