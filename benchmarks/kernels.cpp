@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "read_grains.hpp"
+#include "spot/geometry/silos.hpp"
 #include "spot/packing/tiled_packing.hpp"
 #include "spot/walk/spot_walk.hpp"
 

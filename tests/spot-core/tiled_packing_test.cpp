@@ -12,6 +12,7 @@
 
 #include "plain_packing.hpp"
 #include "scenes.hpp"
+#include "spot/geometry/plane_wall.hpp"
 
 namespace {
 

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "spot/geometry/container.hpp"
+#include "spot/geometry/wall.hpp"
+
+namespace spot {
+
+/// A container made of walls, each with the buffer that spots keep from it.
+class WalledContainer : public Container {
+ public:
+  /// An empty space with an orifice; throws InvalidContainer unless its radius is positive.
+  explicit WalledContainer(const Orifice& orifice);
+
+  void add(std::unique_ptr<Wall> wall, double spot_buffer);
+
+  bool contains(const Vector3& centre) const override;
+  void contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
+  const std::vector<AxisPlane>& axis_planes() const override { return axis_planes_; }
+  void other_contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
+  const Orifice& orifice() const override { return orifice_; }
+  bool may_have_left_to(const Vector3& centre) const override;
+  std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const override;
+
+ private:
+  std::optional<Vector3> reflect_spot(const Vector3& start, const Vector3& target) const override;
+
+  struct Bounded {
+    std::unique_ptr<Wall> wall;
+    double spot_buffer;
+  };
+  Orifice orifice_;
+  std::vector<Bounded> walls_;
+  std::vector<AxisPlane> axis_planes_;  // some of them once more
+};
+
+}  // namespace spot
