@@ -22,6 +22,7 @@
 #include "ranks_of_threads.hpp"
 #include "read_grains.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
+#include "spot/geometry/silos.hpp"
 #include "spot/walk/spot_walk.hpp"
 #include "spot_command.h"
 

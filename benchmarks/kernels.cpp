@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "read_grains.hpp"
+#include "spot/geometry/silos.hpp"
 #include "spot/packing/tiled_packing.hpp"
 #include "spot/relaxation/cell_relaxation.hpp"
 #include "spot/walk/spot_walk.hpp"

@@ -23,6 +23,7 @@
 #include "spot/base/memory.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
+#include "spot/geometry/silos.hpp"
 #include "spot_command.h"
 
 #include <algorithm>

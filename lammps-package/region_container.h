@@ -3,7 +3,9 @@
 #define SPOT_REGION_CONTAINER_H
 
 #include "region_parts.h"
+#include "spot/geometry/base_plate.hpp"
 #include "spot/geometry/container.hpp"
+#include "spot/geometry/spot_buffers.hpp"
 
 #include <optional>
 

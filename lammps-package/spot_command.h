@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "spot/geometry/container.hpp"
+#include "spot/geometry/orifice.hpp"
 #include "spot/walk/parameters.hpp"
 
 /// `box xlo xhi ylo yhi`: four vertical plane walls.

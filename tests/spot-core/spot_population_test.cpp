@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scenes.hpp"
+#include "spot/geometry/base_plate.hpp"
 
 namespace {
 

@@ -13,6 +13,7 @@
 
 #include "plain_packing.hpp"
 #include "scenes.hpp"
+#include "spot/geometry/plane_wall.hpp"
 
 namespace {
 
