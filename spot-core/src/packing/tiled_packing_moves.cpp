@@ -79,9 +79,8 @@ void TiledPacking::set_parts(int workers) {
 
 /// Where the moves are, and what they reach.
 void TiledPacking::find_moves(const std::vector<Move>& moves, const SpotParameters& spots, Workers& workers) {
-  const double radius_squared = square(spots.radius / quantum_.length());
-  reach_.radius_squared = static_cast<float>(radius_squared);
-  reach_.per_square = spots.profile == InfluenceProfile::uniform ? 1.0f : static_cast<float>(1.0 / radius_squared);
+  const auto parabola = spots.profile->clipped_parabola(spots.radius / quantum_.length());
+  reach_ = {static_cast<float>(parabola.radius_squared), static_cast<float>(parabola.per_square)};
   middles_.clear();
   for (const Move& move : moves) middles_.push_back(wrapped(move.middle - low_));
   set_parts(workers.size());
