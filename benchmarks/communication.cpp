@@ -143,7 +143,7 @@ template <typename Start>
 WindowedDrainage drainage(const Start& start, const std::shared_ptr<spot::Communicator>& ranks) {
   const spot::SpotParameters spots = spot_parameters();
   return {spots,
-          SpotCommand::relaxation_of(Accuracy::normal, spots.profile),
+          SpotCommand::relaxation_of(Accuracy::normal, *spots.profile),
           spot::DrainageLimits{0.0},
           window,
           1,

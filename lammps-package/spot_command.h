@@ -59,9 +59,8 @@ struct SpotCommand {
   void resolve(double diameter);
 
   /// The parameters of an accuracy.
-  static double radius_in_diameters(spot::InfluenceProfile profile);
   static double step_height_in_diameters(Accuracy accuracy);
-  static spot::RelaxationParameters relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile);
+  static spot::RelaxationParameters relaxation_of(Accuracy accuracy, const spot::InfluenceProfile& profile);
 
   /// All that decides where grains and spots go, as text, once it is resolved, but for the window. `threads`, `average`
   /// and `peratom` are not in it.

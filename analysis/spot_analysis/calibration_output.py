@@ -37,7 +37,8 @@ def table(parameters, uncorrected):
     return "\n".join(lines)
 
 
-# R_s of spots with a profile over that of uniform ones with the same volume: the mean share is 1 or 0.4 (spot::SpotParameters).
+# R_s of spots with a profile over that of uniform ones with the same volume: the mean share is 1 or 0.4. A test holds
+# this against spot::InfluenceProfile.
 RADII = {"uniform": 1.0, "parabolic": 0.4**(-1 / 3)}
 
 

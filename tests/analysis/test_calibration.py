@@ -253,3 +253,10 @@ def test_deck_for_a_refinement():
 
 def test_unknown_numbers_are_null():
     assert calibration_output.described(Estimate(np.array(np.nan), np.full(10, np.nan)), "d")["value"] is None
+
+
+@pytest.mark.skipif("SPOT_PRINT_PROFILES" not in os.environ, reason="ctest names the program of spot-core")
+def test_profiles_have_the_radii_of_the_library():
+    lines = subprocess.run([os.environ["SPOT_PRINT_PROFILES"]], capture_output=True, text=True, check=True).stdout
+    library = {name: float(radius) for name, _, radius in (line.split() for line in lines.splitlines())}
+    assert calibration_output.RADII == pytest.approx(library, rel=1e-12)

@@ -95,20 +95,7 @@ TEST(FixedVolumeAnalytic, WeightTimesGrainsIsTheVolume) {
     EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains * spot::whole_share), 3.85, 1e-6);
 }
 
-/// The part of the spot above the outlet, by slices of it (2010, section 3.3): of a uniform one they have the volume of
-/// discs, pi (1 - z^2), and of a parabolic one the integral of 1 - z^2 - s^2 over them, pi (1 - z^2)^2 / 2.
 TEST(FixedVolumeAnalytic, VolumeIsThatOfThePartAboveTheOutlet) {
-  for (const auto profile : {spot::InfluenceProfile::uniform, spot::InfluenceProfile::parabolic}) {
-    const double power = profile == spot::InfluenceProfile::uniform ? 1.0 : 2.0, dz = 1e-4;
-    for (double height = -1.25; height <= 1.25; height += 0.125) {
-      double above = 0.0, whole = 0.0;
-      for (double z = -1.0 + 0.5 * dz; z < 1.0; z += dz) {
-        whole += std::pow(1.0 - z * z, power);
-        if (height + z > 0.0) above += std::pow(1.0 - z * z, power);
-      }
-      EXPECT_NEAR(spot::part_above_outlet(profile, height), above / whole, 1e-4) << height;
-    }
-  }
   spot::SpotParameters spots = scenes::paper_spots();
   spots.fixed_volume = 77.0;
   EXPECT_NEAR(spot::fixed_volume_weight(spots, -2.6, 0), 0.0, 1e-6) << "all below";
@@ -131,29 +118,6 @@ TEST(DisplacementAnalytic, SharesOfAParabolicSpot) {
     EXPECT_NEAR(at.x(), -share * 2.5e-3 * 0.7, 1e-9) << part;
     EXPECT_NEAR(at.z(), -share * 2.5e-3 * 0.1, 1e-9) << part;
   }
-}
-
-/// Its volume is that of a smaller uniform one.
-TEST(SpotParametersAnalytic, ParabolicAndUniformSpotsOfTheSameVolume) {
-  spot::SpotParameters uniform{2.6, 2.5e-3}, parabolic{2.6 * std::cbrt(2.5), 2.5e-3};
-  parabolic.profile = spot::InfluenceProfile::parabolic;
-  EXPECT_NEAR(parabolic.spot_volume(0.6), uniform.spot_volume(0.6), 1e-12);
-  EXPECT_NEAR(parabolic.equivalent_radius(), 2.6, 1e-12);
-  EXPECT_EQ(uniform.equivalent_radius(), 2.6);
-  // Mean square difference of the shares of two grains in touch, anywhere within the spot, by sums over a grid.
-  double sum = 0.0;
-  int n = 0;
-  const double r = parabolic.radius, d = 0.01, h = 0.1;
-  for (double x = -r; x < r; x += h)
-    for (double y = -r; y < r; y += h)
-      for (double z = -r; z < r; z += h) {
-        if (x * x + y * y + z * z > r * r) continue;
-        for (const spot::Vector3& along : {spot::Vector3(d, 0, 0), spot::Vector3(0, d, 0), spot::Vector3(0, 0, d)}) {
-          sum += std::pow(((spot::Vector3(x, y, z) + along).squaredNorm() - (x * x + y * y + z * z)) / (r * r), 2);
-          ++n;
-        }
-      }
-  EXPECT_NEAR(parabolic.mean_square_difference(d) / (sum / n), 1.0, 0.02);
 }
 
 /// Influence does not couple grains while it is constant, so grains inside all spheres may see moves in any order.

@@ -65,7 +65,7 @@ struct Treatment {
   std::function<std::shared_ptr<const spot::Container>()> container = [] { return scenes::small_silo(6.0, 4.0); };
   std::vector<Grain> grains = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 8.0}, 0.01, 7);
   RelaxationParameters relaxation = {};
-  spot::InfluenceProfile profile = spot::InfluenceProfile::uniform;
+  const spot::InfluenceProfile* profile = spot::InfluenceProfile::uniform;
   Vector3 low{-4, -3, 0}, high{4, 3, 7};  // where moves are
   double largest_step = 0.05;             // of a grain along an axis
   bool one_way = false;                   // along x

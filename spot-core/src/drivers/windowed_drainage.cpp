@@ -75,7 +75,8 @@ double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tol
   const double displacement = spots.influence * spots.step_width;
   // The steps of a persistent spot add up for some time.
   const double in_a_row = (1.0 + spots.persistence) / (1.0 - spots.persistence);
-  const double difference = displacement * displacement * in_a_row * spots.mean_square_difference(diameter);
+  const double difference =
+      displacement * displacement * in_a_row * spots.profile->mean_square_difference(diameter / spots.radius);
   return std::max(0.1, 3.0 * tolerance * tolerance * diameter * diameter / difference);
 }
 

@@ -61,9 +61,8 @@ void BlockMoves::set_parts(int workers) {
 
 const std::vector<int>& BlockMoves::find(const std::vector<Move>& moves, const SpotParameters& spots, Workers& workers,
                                          std::vector<std::int64_t>& work) {
-  const double radius_squared = square(spots.radius / cells_.lattice().quantum().length());
-  reach_.radius_squared = static_cast<float>(radius_squared);
-  reach_.per_square = spots.profile == InfluenceProfile::uniform ? 1.0f : static_cast<float>(1.0 / radius_squared);
+  const auto parabola = spots.profile->clipped_parabola(spots.radius / cells_.lattice().quantum().length());
+  reach_ = {static_cast<float>(parabola.radius_squared), static_cast<float>(parabola.per_square)};
   middles_.clear();
   for (const Move& move : moves) middles_.push_back(cells_.lattice().wrapped(move.middle - cells_.lattice().low()));
   set_parts(workers.size());

@@ -15,10 +15,6 @@ namespace spot {
 /// How many moves have moved a grain, by its id.
 using MovesReceived = std::unordered_map<std::int64_t, std::int64_t>;
 
-/// The part of a spot's volume that is above the outlet, z radii below its middle: 1/2 + 3 z / 4 - z^3 / 4 if it is
-/// uniform (2010, section 3.3), 1/2 + 15/16 (z - 2 z^3 / 3 + z^5 / 5) if it is parabolic.
-double part_above_outlet(InfluenceProfile profile, double z);
-
 /// The weight of a move whose spot, with its middle at `height` above the outlet, encloses grains with so many shares,
 /// when spots carry a fixed volume: N part / max(grains, 20), where `part` of the spot is above the outlet (2010,
 /// section 3.3). 1 if the parameters say that they don't.

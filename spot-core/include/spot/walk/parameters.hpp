@@ -3,13 +3,9 @@
 
 #include <cstdint>
 
-namespace spot {
+#include "spot/walk/influence_profile.hpp"
 
-/// How the influence of a move falls off with the distance r of a grain from its middle: the grain's share of it.
-enum class InfluenceProfile {
-  uniform,    ///< 1 up to R_s and nothing beyond (2006, 2010)
-  parabolic,  ///< 1 - r^2 / R_s^2: neighbours move by nearly the same, so that they overlap less
-};
+namespace spot {
 
 /// The five fitted numbers of the spot model and the seed.
 /// "2006" is Rycroft, Bazant, Grest, Landry, Phys. Rev. E 73, 051306; "2010" is Rycroft, Wong, Bazant,
@@ -25,7 +21,7 @@ struct SpotParameters {
   /// (2010's fixed-volume weighting).
   /// 0: every grain it encloses moves by -w dr (2006).
   double fixed_volume = 0.0;
-  InfluenceProfile profile = InfluenceProfile::uniform;
+  const InfluenceProfile* profile = InfluenceProfile::uniform;
   /// p: the chance that a step goes the way of the last one, without drawing (2006, section V: a persistent walk).
   double persistence = 0.0;
   /// c_0: spots climb at v_s where they take this share of the volume, and elsewhere in proportion to that share
@@ -45,15 +41,8 @@ struct SpotParameters {
   double diffusion_length() const {
     return step_width * step_width / (4.0 * step_height) * (1.0 + persistence) / (1.0 - persistence);
   }
-  /// The share of a grain anywhere within R_s, on average.
-  double mean_share() const { return profile == InfluenceProfile::uniform ? 1.0 : 0.4; }
-  /// Of two grains in touch anywhere within R_s, the mean square of the difference of their shares: 1/4 if one of them
-  /// is as likely as not to be inside, or 4 d^2 <r^2> <cos^2> / R_s^4.
-  double mean_square_difference(double diameter) const {
-    return profile == InfluenceProfile::uniform ? 0.25 : 0.8 * (diameter / radius) * (diameter / radius);
-  }
   /// Of the uniform spot with the same volume (length).
-  double equivalent_radius() const;
+  double equivalent_radius() const { return profile->equivalent_radius(radius); }
   /// V_s, the free volume that one spot carries through a packing of this packing fraction (length^3).
   double spot_volume(double packing_fraction) const;
   /// The grains' own volume that one spot takes out of the packing around it: that of w N grains, with a fixed volume,
