@@ -10,17 +10,18 @@ import shutil
 import subprocess
 import sys
 
-from spot_analysis.interpreter import require_packages
+from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import numpy as np  # noqa: E402  (only after the check above)
 
-from spot_analysis import (bond_angles, bond_order, command_line, comparison, counts, front, packing,  # noqa: E402
-                           particle_diffusion, profile_width, radial_distribution, run_statistics, thickness,
-                           velocity_correlation)
-from spot_analysis.errors import AnalysisError  # noqa: E402
-from spot_analysis.scene import load_scene  # noqa: E402
+from spot_analysis.base.errors import AnalysisError  # noqa: E402
+from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.scene import load_scene  # noqa: E402
+from spot_analysis.report import comparison  # noqa: E402
+from spot_analysis.statistics import (bond_angles, bond_order, counts, front, packing, particle_diffusion,  # noqa: E402
+                                      profile_width, radial_distribution, run_statistics, thickness, velocity_correlation)
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 MEASURED = (velocity_correlation, particle_diffusion, bond_angles, bond_order, thickness)

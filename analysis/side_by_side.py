@@ -4,14 +4,16 @@
 
 import argparse
 
-from spot_analysis.interpreter import require_packages
+from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import one_factor  # noqa: E402  (only after the check above)
-from spot_analysis import command_line, comparison, run_statistics  # noqa: E402
-from spot_analysis.errors import AnalysisError  # noqa: E402
-from spot_analysis.scene import load_scene  # noqa: E402
+from spot_analysis.base.errors import AnalysisError  # noqa: E402
+from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.scene import load_scene  # noqa: E402
+from spot_analysis.report import comparison  # noqa: E402
+from spot_analysis.statistics import run_statistics  # noqa: E402
 
 
 def parse_arguments():

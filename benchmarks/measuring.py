@@ -24,16 +24,16 @@ BENCHMARKS = ROOT / "benchmarks"
 EXAMPLE = ROOT / "examples" / "silo"
 sys.path.insert(0, str(ROOT / "analysis"))
 
-from spot_analysis.interpreter import require_packages  # noqa: E402
+from spot_analysis.base.interpreter import require_packages  # noqa: E402
 
 require_packages("numpy", "scipy", "zstandard")
 
 import numpy as np  # noqa: E402
-from spot_analysis import packing, radial_distribution, run_statistics, structure  # noqa: E402
-from spot_analysis.counts import FLUX_HEIGHTS  # noqa: E402
-from spot_analysis.dump import read_frames  # noqa: E402
-from spot_analysis.errors import AnalysisError  # noqa: E402
-from spot_analysis.interval import Interval, IntervalView  # noqa: E402
+from spot_analysis.base.errors import AnalysisError  # noqa: E402
+from spot_analysis.reading.dump import read_frames  # noqa: E402
+from spot_analysis.statistics import packing, radial_distribution, run_statistics, structure  # noqa: E402
+from spot_analysis.statistics.counts import FLUX_HEIGHTS  # noqa: E402
+from spot_analysis.statistics.interval import Interval, IntervalView  # noqa: E402
 
 DIAMETER, GRAVITY = 0.003, 9.81  # m, m/s2: of all decks
 TAU = math.sqrt(DIAMETER / GRAVITY)  # s

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from spot_analysis.dump import read_frames
+from spot_analysis.reading.dump import read_frames
 
 from conftest import ANALYSIS
 from synthetic import frame_text, write_text

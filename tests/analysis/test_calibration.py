@@ -9,11 +9,13 @@ import sys
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-from spot_analysis import (calibration, calibration_output, calibration_refinement, calibration_response, calibration_view,
-                           run_statistics)
-from spot_analysis.bootstrap import RESAMPLES
-from spot_analysis.calibration_estimate import CalibrationError, Estimate
-from spot_analysis.scene import load_scene
+from spot_analysis.calibration import (parameters as calibration, refinement as calibration_refinement,
+                                       response as calibration_response, view as calibration_view)
+from spot_analysis.calibration.estimate import CalibrationError, Estimate
+from spot_analysis.reading.scene import load_scene
+from spot_analysis.report import calibration_output
+from spot_analysis.statistics import run_statistics
+from spot_analysis.statistics.bootstrap import RESAMPLES
 
 from conftest import ANALYSIS
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from conftest import ANALYSIS
-from spot_analysis import cell_imprint
-from spot_analysis.container import Container
-from spot_analysis.snapshot import Snapshot
+from spot_analysis.reading.container import Container
+from spot_analysis.statistics import cell_imprint
+from spot_analysis.statistics.snapshot import Snapshot
 from synthetic import frame_text, write_text
 
 CONTAINER = Container(25.0, 4.0, 4.0)

@@ -7,9 +7,9 @@ import subprocess
 
 import numpy as np
 import pytest
-from spot_analysis import structure, voronoi
-from spot_analysis.container import Container, Region
-from spot_analysis.dump import read_file
+from spot_analysis.reading.container import Container, Region
+from spot_analysis.reading.dump import read_file
+from spot_analysis.statistics import structure, voronoi
 
 from synthetic import sequential_packing
 

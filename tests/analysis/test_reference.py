@@ -5,7 +5,8 @@ import pathlib
 
 import numpy as np
 import pytest
-from spot_analysis import comparison, run_statistics
+from spot_analysis.report import comparison
+from spot_analysis.statistics import run_statistics
 
 STORED = pathlib.Path(__file__).resolve().parents[2] / "examples" / "silo" / "reference" / "dem-statistics.npz"
 

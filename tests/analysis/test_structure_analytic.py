@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 import pytest
-from spot_analysis import structure
-from spot_analysis.container import Container, Region
+from spot_analysis.reading.container import Container, Region
+from spot_analysis.statistics import structure
 
 from synthetic import fcc
 

@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from spot_analysis import structure
-from spot_analysis.container import Region
+from spot_analysis.reading.container import Region
+from spot_analysis.statistics import structure
 
 from synthetic import sequential_packing
 

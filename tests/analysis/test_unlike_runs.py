@@ -11,10 +11,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.stats import qmc
-from spot_analysis import comparison, curves, report, run_statistics
-from spot_analysis.dump import read_frames
-from spot_analysis.errors import AnalysisError
-from spot_analysis.scene import load_scene
+from spot_analysis.base.errors import AnalysisError
+from spot_analysis.reading.dump import read_frames
+from spot_analysis.reading.scene import load_scene
+from spot_analysis.report import comparison, curves, report
+from spot_analysis.statistics import run_statistics
 
 from conftest import ANALYSIS
 from synthetic import SCENE, frame_text, write_text

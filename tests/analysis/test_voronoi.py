@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, Voronoi
-from spot_analysis import voronoi
-from spot_analysis.container import Container, Region
+from spot_analysis.reading.container import Container, Region
+from spot_analysis.statistics import voronoi
 
 from synthetic import fcc, hcp, measure, middle_of, sequential_packing
 

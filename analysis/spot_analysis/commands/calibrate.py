@@ -4,9 +4,11 @@
 import argparse
 import os
 
-from .. import (calibration, calibration_output, calibration_plots, calibration_refinement, calibration_response,
-                calibration_spreading, calibration_view, command_line)
-from ..errors import AnalysisError
+from ..base.errors import AnalysisError
+from ..calibration import (parameters as calibration, refinement as calibration_refinement, response as calibration_response,
+                           spreading as calibration_spreading, view as calibration_view)
+from ..report import calibration_output, calibration_plots
+from . import command_line
 
 SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), *3 * [os.pardir])
 EXAMPLE = os.path.join(SOURCES, "examples", "silo", "in.silo_spot")

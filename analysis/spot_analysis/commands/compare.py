@@ -4,9 +4,10 @@
 import argparse
 import os
 
-from .. import command_line, comparison, report
-from ..errors import AnalysisError
-from ..progress import Progress
+from ..base.errors import AnalysisError
+from ..base.progress import Progress
+from ..report import comparison, report
+from . import command_line
 
 
 def parse_arguments():

@@ -4,7 +4,9 @@
 import argparse
 import os
 
-from .. import command_line, comparison, run_statistics
+from ..report import comparison
+from ..statistics import run_statistics
+from . import command_line
 
 
 def measure():
