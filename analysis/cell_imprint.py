@@ -13,9 +13,10 @@ from spot_analysis.base.progress import Progress  # noqa: E402  (only after the 
 from spot_analysis.commands import command_line  # noqa: E402
 from spot_analysis.reading.dump import read_frames  # noqa: E402
 from spot_analysis.reading.scene import load_scene  # noqa: E402
-from spot_analysis.statistics import cell_imprint  # noqa: E402
+from spot_analysis.statistics import cell_imprint, fold  # noqa: E402
+from spot_analysis.statistics.history import History  # noqa: E402
 from spot_analysis.statistics.interval import STEADY_FROM  # noqa: E402
-from spot_analysis.statistics.snapshot import LAG_TAU, TIME_TOLERANCE, History, Snapshot  # noqa: E402
+from spot_analysis.statistics.snapshot import LAG_TAU, TIME_TOLERANCE, Snapshot  # noqa: E402
 
 CONTROLS = (1.2, 1.3, 1.4, 1.6, 1.7, 1.8)  # d
 
@@ -50,7 +51,7 @@ def main():
     found = measure(parse_arguments())
     print("| axis | quantity | blocks | chi-square (7) | p | rms deviation | of scatter alone | at an edge, in the middle | p in cells of "
           + ", ".join(f"{period:g}" for period in CONTROLS) + " d |\n" + "|---" * 9 + "|")
-    for axis in cell_imprint.AXES:
+    for axis in fold.AXES:
         for quantity in cell_imprint.QUANTITIES:
             one = found[axis, cell_imprint.EDGE][quantity]
             deviation, scatter = one.depth()

@@ -105,7 +105,8 @@ def measure(concept, packings, times, container, region):
     """The arrays of ``concept``.Measurement after these packings, as RunStatistics.measured holds them."""
     from types import SimpleNamespace
 
-    from spot_analysis.statistics.snapshot import LAG_TAU, History
+    from spot_analysis.statistics.history import History
+    from spot_analysis.statistics.snapshot import LAG_TAU
     measurement, history = concept.Measurement(container, region), History(LAG_TAU)
     for snapshot in make_snapshots(packings, times, container, region):
         history.add(snapshot)

@@ -61,7 +61,7 @@ def test_planted_density_is_found(axis, name):
     found = imprints(seed=10, axis=axis, depth=0.02)
     grains = found[name, cell_imprint.EDGE]["grains"]
     assert grains.p_value < 1e-4
-    expected = 1 - 2 * np.pi * 0.02 * np.cos(2 * np.pi * cell_imprint.DISTANCES / cell_imprint.EDGE)
+    expected = 1 - 2 * np.pi * 0.02 * np.cos(2 * np.pi * cell_imprint.DISTANCE / cell_imprint.EDGE)
     assert np.all(np.abs(grains.profile - expected) < 4 * grains.error + 0.02)  # to first order, before the step
     assert found["z" if name == "x" else "x", cell_imprint.EDGE]["grains"].p_value > 1e-3
     assert found[name, cell_imprint.EDGE]["sideways"].p_value > 1e-3

@@ -14,8 +14,11 @@ from scipy.stats import qmc
 from spot_analysis.base.errors import AnalysisError
 from spot_analysis.reading.dump import read_frames
 from spot_analysis.reading.scene import load_scene
-from spot_analysis.report import comparison, curves, report
+from spot_analysis.report import comparison, curves, figures
 from spot_analysis.statistics import run_statistics
+from spot_analysis.statistics.interval import choose_interval
+from spot_analysis.statistics.interval_view import IntervalView
+from spot_analysis.statistics.measuring import measure_dumps
 
 from conftest import ANALYSIS
 from synthetic import SCENE, frame_text, write_text
@@ -56,7 +59,7 @@ def write_run(folder, frames, scene=SILO, **keys):
 def measured(source):
     """RunStatistics and the warnings."""
     warnings = []
-    return run_statistics.measure(source, load_scene(source), warn=warnings.append), warnings
+    return measure_dumps(source, load_scene(source), warn=warnings.append), warnings
 
 
 def script(name, *arguments):
@@ -98,7 +101,7 @@ def test_snapshots_without_grains_are_measured(full, tmp_path, case):
     # as in the full run wherever a snapshot and the one before it have grains
     same = run.grains > 0
     np.testing.assert_array_equal(run.above[same], dem.above[same][:, :run.above.shape[1]])
-    views = {name: comparison.IntervalView(one, np.arange(len(TIMES)), comparison.choose_interval(TIMES))
+    views = {name: IntervalView(one, np.arange(len(TIMES)), choose_interval(TIMES))
              for name, one in (("DEM", dem), ("spot", run))}
     rows = {row.name: row for row in comparison.compare(*views.values())}
     for row in rows.values():
@@ -108,7 +111,7 @@ def test_snapshots_without_grains_are_measured(full, tmp_path, case):
     curves.as_lists(views)
     if case in ("later half", "all"):
         assert rows["surface_height_axis"].spot is None
-        assert report.draw_pictures(tmp_path, views, lambda text: None)
+        assert figures.draw_pictures(tmp_path, views, lambda text: None)
     if case == "all":
         assert rows["packing_fraction"].left_out == rows["largest_overlap"].left_out == "spot: there are no grains"
         assert rows["crystal_share"].left_out == "spot: no snapshot fills z = 15 d to 50 d"

@@ -33,6 +33,11 @@ class Estimate:
         known = np.isfinite(self.replicates).mean() > 1 - LOST_REPLICATES
         return bool(np.isfinite(self.value) and known and self.value > significance * self.error)
 
+    def as_floats(self, scale=1.0):
+        """A single value and its error, times ``scale``; what was chosen, not measured, has the error 0, rounding apart."""
+        value, error = scale * float(self.value), scale * float(self.error)
+        return value, error if error > 1e-12 * abs(value) else 0.0
+
     def __getitem__(self, index):
         return Estimate(self.value[index], self.replicates[:, index])
 

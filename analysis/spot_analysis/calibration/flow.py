@@ -5,7 +5,7 @@ import numpy as np
 
 from ..statistics.counts import SLAB, slab_counts
 from ..statistics.packing import fractions
-from ..statistics.structure import RDF_RANGE
+from ..statistics.neighbours import RDF_RANGE
 from .estimate import CalibrationError, combine
 from .view import estimate_snapshots, estimate_steps
 

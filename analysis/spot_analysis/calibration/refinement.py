@@ -8,11 +8,12 @@ import tempfile
 
 from ..base.progress import Progress
 from ..reading.scene import load_scene
-from ..report.calibration_output import IN_THE_DECK, lammps_variables
-from ..statistics import run_statistics
 from ..statistics.interval import STEADY_FROM
+from ..statistics.measuring import measure_dumps
 from .estimate import CalibrationError
-from .parameters import measure, parameters, response_of
+from .lammps_variables import IN_THE_DECK, lammps_variables
+from .measurement import measure
+from .parameters import parameters, response_of
 from .view import CONCEPTS
 
 
@@ -35,7 +36,7 @@ def refine(target, response, rounds, deck, lmp, duration, words="", warn=print, 
             variables = lammps_variables(present, "the round before", target.view.interval.span, profile)
             run_deck(deck, lmp, variables, folder, duration, words, Progress(f"round {number}"))
             dumps = os.path.join(folder, "dumps")
-            statistics = run_statistics.measure(dumps, load_scene(dumps), f"round {number}", warn=warn, concepts=CONCEPTS)
+            statistics = measure_dumps(dumps, load_scene(dumps), f"round {number}", warn=warn, concepts=CONCEPTS)
             run = measure(statistics, STEADY_FROM, None, target.buffer)
         response = response_of(run, put_in, response)
         present = parameters(target, response)

@@ -5,7 +5,8 @@ import numpy as np
 
 from ..statistics import particle_diffusion, velocity_correlation
 from ..statistics.bootstrap import BLOCK_TAU, MINIMUM_BLOCKS
-from ..statistics.interval import STEADY_FROM, Interval, IntervalView
+from ..statistics.interval import STEADY_FROM, Interval
+from ..statistics.interval_view import IntervalView
 from ..statistics.snapshot import LAG_TAU, TIME_TOLERANCE
 from .estimate import CalibrationError, estimate
 

@@ -8,6 +8,7 @@ from ..base.errors import AnalysisError
 from ..reading.scene import NUMBERS, ORIGIN, load_scene
 from ..report import left_out
 from ..statistics import run_statistics
+from ..statistics.measuring import measure_dumps
 
 
 def add_scene_options(parser, prefix=""):
@@ -32,7 +33,7 @@ def open_run(source, options, prefix, label, concepts=run_statistics.CONCEPTS):
     if os.path.isfile(source) and source.endswith(".npz"):
         return run_statistics.load(source)
     scene = scene_from_options(options, source, prefix)
-    return run_statistics.measure(source, scene, label, warn=print_warning, concepts=concepts)
+    return measure_dumps(source, scene, label, warn=print_warning, concepts=concepts)
 
 
 def print_warning(text):

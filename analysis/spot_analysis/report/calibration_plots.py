@@ -3,17 +3,13 @@
 
 import os
 
-import matplotlib
+import numpy as np
+from matplotlib import pyplot as plt
 
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-import numpy as np  # noqa: E402
-
-from ..calibration.correlation import TOUCHING  # noqa: E402
-from ..calibration.estimate import combine  # noqa: E402
-from ..statistics.counts import SLAB, slab_counts  # noqa: E402
-from ..statistics.particle_diffusion import DROPS  # noqa: E402
+from ..calibration.correlation import TOUCHING
+from ..calibration.estimate import combine
+from ..statistics.counts import SLAB, slab_counts
+from ..statistics.particle_diffusion import DROPS
 
 DATA = {"color": "#1b4965", "marker": "o", "markersize": 3.5, "linestyle": "none", "capsize": 2, "linewidth": 1}
 FIT, SECOND_FIT = {"color": "#d1495b"}, {"color": "#f4a259", "linestyle": "--"}

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from ..statistics import (bond_angles, bond_order, counts, fluctuations, free_surface, front, mixing, packing,
                           particle_diffusion, profile_width, radial_distribution, residence, stagnation, thickness,
                           velocity_correlation, voronoi)
-from ..statistics.counts import FLUX_HEIGHTS, SLAB
-from ..statistics.interval import STEADY_FROM, Interval, IntervalView, Value, choose_interval, common_times, whole_run
+from ..statistics.interval_view import whole_run
+from ..statistics.value import Value
 from . import left_out
-from .bounds import BOUNDS, PAPERS
-
-__all__ = ["FLUX_HEIGHTS", "SLAB", "STEADY_FROM", "Interval", "IntervalView", "Row", "Value", "choose_interval",
-           "common_times", "compare", "left_out_of", "quantities"]
+from .bounds import BOUNDS
+from .papers import PAPERS
 
 # Each concept has quantities(view): name -> Value, and some between(dem view, spot view) for what needs both.
 SECTIONS = {

@@ -9,8 +9,8 @@ from ..statistics import front, particle_diffusion, velocity_correlation, vorono
 from ..statistics.counts import SLAB
 from ..statistics.interval import STEADY_FROM
 from ..statistics.mean_flow import COVER
+from ..statistics.neighbours import RDF_RANGE
 from ..statistics.snapshot import LAG_TAU
-from ..statistics.structure import RDF_RANGE
 
 
 def _grains(view, name):

@@ -6,8 +6,8 @@ from matplotlib import pyplot as plt
 
 from ..statistics import mixing, particle_diffusion, profile_width, residence, stagnation, velocity_correlation
 from ..statistics.fits import fit_line
-from .bounds import PAPERS
-from .plots import PAPER_STYLE, STYLE, TIME_LABEL, mark_interval, note_missing_data
+from .papers import PAPERS
+from .plot_style import PAPER_STYLE, STYLE, TIME_LABEL, mark_interval, note_missing_data
 
 PROFILES = (10, 20, 30, 40, 50, 60)  # d
 

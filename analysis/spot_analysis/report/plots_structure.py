@@ -1,14 +1,35 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of the packing: g(r), g3(theta), order, local packing fraction, profiles across the thickness, surface."""
+"""Pictures of the packing: its quality, g(r), g3(theta), order, local packing fraction, profiles across the thickness, surface."""
 
 import numpy as np
 from matplotlib import pyplot as plt
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
 from ..statistics import bond_angles, bond_order, free_surface, radial_distribution, thickness, voronoi
-from .plots import STYLE, TIME_LABEL, mark_interval, note_missing_data
+from ..statistics.packing import fractions
+from .plot_style import STYLE, TIME_LABEL, mark_interval, note_missing_data
 
 START_STYLE = {"color": "0.6", "linewidth": 1.2}
 LATE = plt.get_cmap("viridis")
+
+
+def packing_quality(views):
+    """Packing fraction, contacts and badness in the region, against time."""
+    figure, axes = plt.subplots(1, 3, figsize=(10, 3.2), constrained_layout=True)
+    for name, view in views.items():
+        run, common = view.run, view.common
+        for axis, samples in zip(axes, (fractions(run), run.contacts, run.badness)):
+            axis.plot(run.times[common], samples[common], label=name, **STYLE[name])
+    for axis, label in zip(axes, ("packing fraction", "contacts a grain", "badness $B$")):
+        axis.set(xlabel=TIME_LABEL, ylabel=label)
+    note_missing_data(axes)
+    axes[2].set_yscale("log")
+    axes[2].yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes[2].yaxis.set_major_formatter(FormatStrFormatter("%.0e"))
+    axes[2].yaxis.set_minor_formatter(NullFormatter())
+    mark_interval(axes, views)
+    axes[0].legend(frameon=False)
+    return figure
 
 
 def radial(views):

@@ -4,7 +4,7 @@
 import numpy as np
 
 from .bonds import directions_by_grain
-from .interval import Value
+from .value import Value
 
 NAME = "bond_angles"
 BINS = 180  # of 1 degree

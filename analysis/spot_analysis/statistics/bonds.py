@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .structure import close_pairs
+from .neighbours import close_pairs
 
 BOND_CUTOFF = 1.38  # d; first minimum of g(r) in 2006, and ours within the width of that minimum
 

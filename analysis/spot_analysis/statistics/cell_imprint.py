@@ -5,106 +5,26 @@ The cells are cubes of EDGE; the grid begins at the lowest x and y of any grain 
 grains are put into bins by their distance to the nearest edge of a cell, and in every bin are counted, with their overlaps and
 their motion sideways about the mean flow, each less its mean over the length of a cell around, so that what changes slowly over
 the silo does not look like an imprint. Without one, nothing is left.
-
-What is known of the scatter comes from blocks, several cells long: what grains of one block do is tied together by their
-neighbours, over snapshots, and over runs from the same packing. So a block is one sample, summed over all of these.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
-from scipy import linalg, stats
 
 from ..base.errors import AnalysisError
-from ..reading.container import Region
+from .fold import AXES, BINS, DISTANCES, Fold
+from .imprint import imprint
 from .mean_flow import UPPER, WALL_LAYER, Step, about_mean_flow
+from .neighbours import close_pairs
+from .region import Region
 from .snapshot import LAG_TAU
-from .structure import close_pairs
 
 EDGE = 1.5
-BINS = 15  # in a cell
-DISTANCES = (np.arange(BINS // 2 + 1) + 0.5) / BINS * EDGE  # middles of the bins, which are two each but for the last
+DISTANCE = (np.arange(DISTANCES) + 0.5) / BINS * EDGE  # of the bins' middles from the nearest edge
 HALF_WIDTH, BOTTOM, TOP = 15.0, 25.0, 66.0  # of the bulk, in steady flow, far from side walls, outlet and surface
-CELLS, ACROSS = 4, 2.0  # size of a block: in cells along the axis, in d across
-AXES = {"x": (0, 2), "z": (2, 0)}  # the axis itself, and the one across
 QUANTITIES = ("grains", "overlap", "sideways")
 
 
 def bulk(container):
     return Region(min(HALF_WIDTH, 0.6 * container.half_width), BOTTOM, TOP, container.half_depth - WALL_LAYER)
-
-
-class Fold:
-    """Sums over grains along one axis, in bins of which BINS make a cell, in strips ACROSS wide."""
-
-    def __init__(self, axis, origin, period, region):
-        low, high = np.array([-region.half_width, 0, region.bottom]), np.array([region.half_width, 0, region.top])
-        self._axes = AXES[axis]
-        along, across = self._axes
-        self._start = origin[along] + np.ceil((low[along] - origin[along]) / period) * period, low[across]
-        self._size = period / BINS, ACROSS
-        cells, strips = int((high[along] - self._start[0]) / period), int((high[across] - low[across]) / ACROSS)
-        self._shape = cells * BINS, strips
-        self._sums = {}
-
-    def add(self, name, positions, values):
-        """values : (n, k) of grains at positions (n, 3)"""
-        place = np.stack([(positions[:, a] - start) / size for a, start, size in zip(self._axes, self._start, self._size)])
-        along, across = np.floor(place).astype(np.int64)
-        inside = (along >= 0) & (along < self._shape[0]) & (across >= 0) & (across < self._shape[1])
-        index = across[inside] * self._shape[0] + along[inside]
-        sums = np.stack([np.bincount(index, column, self._shape[0] * self._shape[1]) for column in values[inside].T], axis=-1)
-        self._sums[name] = self._sums.get(name, 0) + sums
-
-    def has(self, name):
-        return name in self._sums
-
-    def sums(self, name):
-        """(strips, bins along the axis, k)"""
-        return self._sums[name].reshape(self._shape[1], self._shape[0], -1)
-
-
-@dataclass(frozen=True)
-class Imprint:
-    """profile, error : at DISTANCES, a quantity over its mean, with standard errors
-    chi_square : of the profile against a flat one, with one degree of freedom less than bins, whose correlations are included
-    p_value : chance of more without an imprint, by Hotelling's distribution, since the scatter is estimated too
-    """
-
-    profile: np.ndarray
-    error: np.ndarray
-    chi_square: float
-    p_value: float
-    blocks: int
-
-    def depth(self):
-        """Root mean square deviation from 1, and what scatter alone makes of it."""
-        return np.sqrt(((self.profile - 1)**2).mean()), np.sqrt((self.error**2).mean())
-
-
-def around(sums):
-    """Mean over the length of a cell around each bin (strips, bins), without the outermost cells."""
-    total = np.cumsum(np.pad(sums, ((0, 0), (1, 0))), axis=1)
-    means = (total[:, BINS:] - total[:, :-BINS]) / BINS
-    return means[:, BINS - BINS // 2:][:, :sums.shape[1] - 2 * BINS]
-
-
-def imprint(sums, grains):
-    """The Imprint of what is summed (strips, bins) over so many grains."""
-    off = sums[:, BINS:-BINS] - around(sums) / around(grains) * grains[:, BINS:-BINS]
-    cells = off.shape[1] // BINS // CELLS * CELLS
-    off = off[:, :cells * BINS].reshape(-1, CELLS, BINS).sum(axis=1)
-    off = (off + off[:, ::-1])[:, :len(DISTANCES)] / 2
-    weight = np.where(np.arange(len(DISTANCES)) < BINS // 2, 2, 1)  # bins at this distance
-    off -= (off @ weight / BINS)[:, None]
-    blocks, freedom, scale = len(off), len(DISTANCES) - 1, sums[:, BINS:(cells + 1) * BINS].sum() / BINS
-    if len(off) <= len(DISTANCES):
-        raise AnalysisError(f"{len(off)} blocks are too few for the scatter of {len(DISTANCES)} bins: the silo is too narrow")
-    samples = off @ linalg.null_space(weight[None].astype(float))
-    mean = samples.mean(axis=0)
-    chi_square = float(mean @ np.linalg.solve(np.cov(samples.T) / blocks, mean))
-    return Imprint(1 + off.sum(axis=0) / scale, off.std(axis=0, ddof=1) * np.sqrt(blocks) / scale, chi_square,
-                   float(stats.f.sf(chi_square * (blocks - freedom) / (freedom * (blocks - 1)), freedom, blocks - freedom)), blocks)
 
 
 def squared_overlaps(positions):

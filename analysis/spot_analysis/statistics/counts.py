@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Grains in the silo, fluxes through heights and the density drop of the slab that 2006 counts in."""
 
-from .interval import Value
+from .value import Value
 
 FLUX_HEIGHTS = (2, 10, 30, 60)  # d
 SLAB = (50, 70)  # d

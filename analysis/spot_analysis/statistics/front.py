@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from .interval import Value
+from .value import Value
 
 HEIGHTS = (30, 60, 90)  # d
 FIRST = 1.0  # tau; a first snapshot after it may be after the front

@@ -14,8 +14,8 @@ each of its grains by itself, which no spot describes. From wall to wall DEM's b
 
 import numpy as np
 
-from ..reading.container import Region
 from .flow import common_grains
+from .region import Region
 
 HALF_WIDTH = 8.0  # d; 2006 takes correlations from a core 16 d wide
 WALL_LAYER = 1.5  # d

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from .interval import Value
+from .value import Value
 
 NAME = "mixing"
 LAYER = 10.0  # d; layers whose grains count as different

@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 
-from .interval import Value
 from .structure import packing_fraction
+from .value import Value
 
 
 def fractions(run):

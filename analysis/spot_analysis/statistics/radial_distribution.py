@@ -1,16 +1,51 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """g(r) of a run over an interval, how far two of them are apart, and its signs of order at long times; lengths in d."""
 
+import math
+
 import numpy as np
 
-from .interval import Value
-from .structure import slab_rdf
+from .neighbours import RDF_RANGE
+from .value import Value
 
+RDF_EDGES = np.linspace(0, RDF_RANGE, 201)
 REBIN = 2  # stored bins in one of the 0.05 d that g(r) is compared in
 CONTACT_PEAK = (0.95, 1.05)  # d; told apart, since its height depends on stiffness and bin width
 MINIMUM_BETWEEN = (1.2, 1.6)  # d
 ORDER_PEAKS = {"sqrt3": 3**0.5, "2": 2.0}  # d; grow as grains order (2006)
 PEAK_HALF_WIDTH = 0.051  # d
+
+
+def rdf_counts(pairs, edges=RDF_EDGES):
+    """Partners of the region's grains in each shell; (len(edges) - 1,) int64, summed over grains. Shells are even."""
+    # numpy sorts the pairs when it is given edges or whole-number weights
+    counts = np.histogram(pairs.distance, len(edges) - 1, (edges[0], edges[-1]), weights=pairs.ends.astype(float))[0]
+    return np.rint(counts).astype(np.int64)
+
+
+def slab_rdf(counts, grains, frames, region, container, edges=RDF_EDGES):
+    """g(r) between two walls.
+
+    counts : (..., k) partners summed over grains and frames
+    grains : (...) grains of the region summed over frames
+    frames : (...) number of frames
+
+    A grain placed evenly over a slab of thickness T expects 4 pi r^2 rho (1 - r/(2T)) partners per unit r for
+    r <= T and 4 pi r^2 rho T/(2r) beyond (2010). T is the range of the centres, walls' distance less d, and rho
+    the density over it: taking one from centres and the other from walls is off by d over the walls' distance.
+    Grains stand in layers at the walls, not evenly, so g stays a few per cent below 1 for 3 d < r < T.
+    """
+    thickness = 2 * container.half_depth - 1
+    density = np.asarray(grains, dtype=float) / np.asarray(frames, dtype=float) / (region.area() * thickness)
+    expected = np.diff(_ideal_partners(np.asarray(edges), thickness))
+    return np.asarray(counts) / (np.asarray(grains, dtype=float) * density)[..., None] / expected
+
+
+def _ideal_partners(r, thickness):
+    """Integral from 0 to r of the expected count at unit density."""
+    near = np.minimum(r, thickness)
+    beyond = math.pi * thickness * (np.maximum(r, thickness)**2 - thickness**2)
+    return 4 * math.pi * (near**3 / 3 - near**4 / (8 * thickness)) + beyond
 
 
 def edges(run):

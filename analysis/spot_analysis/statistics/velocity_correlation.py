@@ -13,9 +13,9 @@ from scipy.sparse import csr_matrix
 from scipy.spatial import cKDTree
 
 from .fits import fit_exponential
-from .interval import Value
 from .mean_flow import COVER, SIZE, UPPER, Step, about_mean_flow, core, triangles
 from .snapshot import LAG_TAU
+from .value import Value
 
 NAME = "velocity_correlation"
 BOTTOM, TOP = 50.0, 66.0  # d; as high as 2006's region is wide, where DEM flows steadily from 40 tau on
