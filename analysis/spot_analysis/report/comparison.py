@@ -11,9 +11,11 @@ from ..statistics.interval_view import whole_run
 from ..statistics.value import Value
 from . import left_out
 from .bounds import BOUNDS
+from .by_name import by_name
 from .papers import PAPERS
 
-# Each concept has quantities(view): name -> Value, and some between(dem view, spot view) for what needs both.
+# Each concept has quantities(view): name -> Value, and some between(dem view, spot view) for what needs both. MEANING says
+# what each of them is, and NEEDS what it needs to be known, of ``left_out.NEEDS``; in both the first pattern counts that fits.
 SECTIONS = {
     "Counts and fluxes": (counts, fluctuations, front),
     "Velocities": (profile_width, velocity_correlation, particle_diffusion),
@@ -31,6 +33,7 @@ class Row:
     bound, met : in words, and whether the spot model keeps it
     paper : (DEM, spot, source) of the literature
     left_out : why a value is unknown
+    meaning : what it is, in a few words
     """
 
     name: str
@@ -46,6 +49,7 @@ class Row:
     met: bool = None
     paper: tuple = None
     left_out: str = None
+    meaning: str = ""
 
     def as_dict(self):
         keys = ("unit", "dem", "dem_error", "spot", "spot_error", "difference", "difference_error", "bound", "met")
@@ -98,4 +102,4 @@ def _row(section, concept, name, dem, spot, steady, lacking):
     met = bound.is_met(dem.value, dem.error, spot.value) if bound and (steady or bound.always) else None
     return Row(name, section, dem.unit, dem.value, dem.error, spot.value, spot.error, difference, error,
                bound and bound.text(), met, PAPERS.get(name),
-               left_out.of_runs(lacking, concept, name) if lacking else None)
+               left_out.of_runs(lacking, concept, name) if lacking else None, by_name(concept.MEANING, name, ""))

@@ -29,7 +29,8 @@ SECTIONS = {
         "density_drop": (plots_counts.density_drop, "Grains in the slab in which 2006 measures the density drop."),
         "radial_distribution": (plots_structure.radial, "g(r) in the structure region, corrected for the slab."),
         "bond_angles": (plots_structure.angles, f"g3: angles between bonds (pairs closer than {BOND_CUTOFF:g} d) there."),
-        "drained_grains": (plots_counts.drained_grains, "Grains left above z = 0, and the outflow. Shaded: the interval compared."),
+        "drained_grains": (plots_counts.drained_grains, "Grains left above z = 0, and the outflow. Shaded: the interval "
+                           "compared."),
         "fluxes": (plots_counts.fluxes, "Flux through four heights. In steady flow each equals the outflow."),
         "long_times": (plots_structure.long_times, "g(r) at successive times of each run, where 2006 sees peaks at "
                        "sqrt(3) d and 2 d grow, and the share of crystal-like grains."),
@@ -38,7 +39,8 @@ SECTIONS = {
         "surface": (plots_structure.surface, "Free surface at the end of the interval, highest grain within 1.25 d of |x|, "
                     "and the angle of the straight line through it."),
         "across_thickness": (plots_structure.across_thickness, "Packing fraction and velocity across the thickness."),
-        "packing_quality": (plots_structure.packing_quality, "Packing fraction, contacts a grain and badness in the structure region."),
+        "packing_quality": (plots_structure.packing_quality, "Packing fraction, contacts a grain and badness in the "
+                            "structure region."),
         "local_packing": (plots_structure.local_packing, "Packing fraction of Voronoi cells, mean over the interval."),
     },
     "For users of a silo": {

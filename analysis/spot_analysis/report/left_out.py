@@ -5,19 +5,19 @@ import re
 
 import numpy as np
 
-from ..statistics import front, particle_diffusion, velocity_correlation, voronoi
 from ..statistics.counts import SLAB
 from ..statistics.interval import STEADY_FROM
 from ..statistics.mean_flow import COVER
 from ..statistics.neighbours import RDF_RANGE
 from ..statistics.snapshot import LAG_TAU
+from .by_name import by_name
 
 
-def _grains(view, name):
+def _grains(view, concept, name):
     return None if view.run.grains[view.snapshots].any() else "there are no grains"
 
 
-def _pairs(view, name):
+def _pairs(view, concept, name):
     """Snapshots that velocities can be taken from."""
     run = view.run
     if len(view.pair_rows(run.profile_start, run.profile_end)):
@@ -26,7 +26,7 @@ def _pairs(view, name):
     return f"no two snapshots are {LAG_TAU:g} tau apart" + (f" but {apart.min():g} tau and more" if len(apart) else "")
 
 
-def _height(view, name):
+def _height(view, concept, name):
     """Grains as high up as the name of the quantity says."""
     number = re.search(r"_(\d+)d", name)
     needed = SLAB[1] if name.startswith(("slab", "density")) else int(number[1]) if number else 0
@@ -34,71 +34,52 @@ def _height(view, name):
     return f"no grain is higher than z = {top:g} d" if top < needed else None
 
 
-def _outflow(view, name):
+def _outflow(view, concept, name):
     return None if view.crossings(0).any() else "no grain leaves through z = 0"
 
 
-def _structure(view, name):
+def _structure(view, concept, name):
     if np.isfinite(view.run.badness[view.snapshots]).any():
         return None
     region = view.run.region()
     return f"no snapshot fills z = {region.bottom:g} d to {region.top + RDF_RANGE:g} d"
 
 
-def _core(concept):
-    def need(view, name):
-        part = view.run.measured[concept.NAME]
-        rows = view.pair_rows(part.start, part.end)
-        return None if len(rows) else f"no snapshot fills z = {concept.BOTTOM:g} d to {concept.TOP + COVER:g} d"
-    return need
+def _core(view, concept, name):
+    """The core of the flow, full of grains from the statistic's BOTTOM to beyond its TOP."""
+    part = view.run.measured[concept.NAME]
+    rows = view.pair_rows(part.start, part.end)
+    return None if len(rows) else f"no snapshot fills z = {concept.BOTTOM:g} d to {concept.TOP + COVER:g} d"
 
 
-def _cells(view, name):
-    times = view.run.measured[voronoi.NAME].times
-    return None if len(view.rows(times)) else f"no snapshot is at a multiple of {voronoi.PERIOD:g} tau"
+def _cells(view, concept, name):
+    times = view.run.measured[concept.NAME].times
+    return None if len(view.rows(times)) else f"no snapshot is at a multiple of {concept.PERIOD:g} tau"
 
 
-def _start(view, name):
+def _start(view, concept, name):
     first = view.run.times[view.common[0]]
-    return f"the first snapshot is at {first:g} tau" if first > front.FIRST else None
+    return f"the first snapshot is at {first:g} tau" if first > concept.FIRST else None
 
 
-def _steady(view, name):
+def _steady(view, concept, name):
     return None if view.interval.is_steady() else f"the interval is not that of steady flow, from {STEADY_FROM:g} tau on"
 
 
-def _end(view, name):
-    height = int(re.search(r"_(\d+)d", name)[1]) + front.COVER
+def _end(view, concept, name):
+    height = int(re.search(r"_(\d+)d", name)[1]) + concept.COVER
     covered = view.run.count_above(height)[view.snapshots[-1]] > 0
     return None if covered else f"no grain is above z = {height} d at the end"
 
 
-# By the name of the quantity, or else of its concept. What a need says comes before what the ones behind it say.
-NEEDS = {
-    "counts": (_height, _outflow),
-    "fluctuations": (_outflow, _pairs),
-    "front": (_start, _steady, _end),
-    "profile_width": (_height, _pairs),
-    "velocity_correlation": (_pairs, _core(velocity_correlation)),
-    "particle_diffusion": (_pairs, _core(particle_diffusion)),
-    "packing": (_grains, _structure),
-    "radial_distribution": (_structure,),
-    "bond_angles": (_structure,),
-    "bond_order": (_structure,),
-    "voronoi": (_cells, _structure),
-    "thickness": (_structure, _pairs),
-    "free_surface": (_grains,),
-    "stagnation": (_height, _pairs),
-    "residence": (_outflow, _height),
-    "mixing": (_outflow,),
-    "unlike_neighbours": (_structure,),
-}
+# By the names that the statistics have for them in NEEDS. What a need says comes before what the ones behind it say.
+NEEDS = {"grains": _grains, "pairs": _pairs, "height": _height, "outflow": _outflow, "structure": _structure, "core": _core,
+         "cells": _cells, "start": _start, "steady": _steady, "end": _end}
 
 
 def why(view, concept, name):
     """Why the quantity ``name`` of the module ``concept`` is unknown in ``view``, an IntervalView."""
-    needs = NEEDS.get(name) or NEEDS.get(concept.__name__.rpartition(".")[2], ())
-    reasons = (need(view, name) for need in needs)
+    reasons = (NEEDS[need](view, concept, name) for need in by_name(concept.NEEDS, name, ()))
     return next((reason for reason in reasons if reason), "the interval does not tell it")
 
 

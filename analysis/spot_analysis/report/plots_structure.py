@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of the packing: its quality, g(r), g3(theta), order, local packing fraction, profiles across the thickness, surface."""
+"""Pictures of the packing: its quality, g(r), g3(theta), order, local packing fraction, profiles across the thickness,
+surface."""
 
 import numpy as np
 from matplotlib import pyplot as plt

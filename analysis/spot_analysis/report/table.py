@@ -2,7 +2,6 @@
 """The comparison as a text table, with the interval before it and the verdict after it."""
 
 from ..statistics.interval import STEADY_FROM
-from .meanings import MEANING, MEANING_OF_FAMILY
 
 HEAD = ("quantity", "unit", "DEM", "spot", "difference", "papers", "bound", "met", "meaning")
 
@@ -27,7 +26,7 @@ def cells(row):
         difference = _with_error(row.difference, row.difference_error, "+") + relative
     met = {None: "", True: "yes", False: "NO"}[row.met]
     return (row.name, row.unit, _with_error(row.dem, row.dem_error), _with_error(row.spot, row.spot_error),
-            difference, _papers(row.paper), row.bound or "", met, _meaning(row.name))
+            difference, _papers(row.paper), row.bound or "", met, row.meaning)
 
 
 def _papers(paper):
@@ -37,11 +36,6 @@ def _papers(paper):
     dem, spot, source = paper
     values = ["-" if value is None else _number(value) for value in (dem, spot)]
     return f"{values[0] if spot is None else ' / '.join(values)} ({source})"
-
-
-def _meaning(name):
-    families = (text for part, text in MEANING_OF_FAMILY.items() if name.startswith(part) or name.endswith(part))
-    return MEANING.get(name) or next(families, "")
 
 
 def _with_error(value, error, sign=""):

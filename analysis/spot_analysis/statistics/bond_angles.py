@@ -10,6 +10,12 @@ NAME = "bond_angles"
 BINS = 180  # of 1 degree
 REBIN = 2  # bins in one of those that are compared
 EDGES = np.linspace(0, 180, BINS // REBIN + 1)  # degrees
+MEANING = {
+    "g3_l2_initial": "rms change of g3 since the start",
+    "g3_l2": "rms difference of g3, spot and DEM",
+    "g3_l2_ratio": "g3_l2 over DEM's g3_l2_initial",
+}
+NEEDS = {"*": ("structure",)}
 
 
 def angle_counts(bonds):

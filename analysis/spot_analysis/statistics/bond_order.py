@@ -13,6 +13,8 @@ import numpy as np
 NAME = "bond_order"
 CONNECTED = 0.7
 CONNECTIONS = 7
+MEANING = {"crystal_share": "7 or more bonds with q6.q6 > 0.7"}
+NEEDS = {"*": ("structure",)}
 
 
 def harmonics(directions):

@@ -5,6 +5,19 @@ from .value import Value
 
 FLUX_HEIGHTS = (2, 10, 30, 60)  # d
 SLAB = (50, 70)  # d
+MEANING = {
+    "grains_initial": "above z = 0 at the first common time",
+    "grains_left": "above z = 0 at the last common time",
+    "grains_drained": "between them, whatever the interval",
+    "grains_outside": "must be 0",
+    "outflow": "through z = 0",
+    "slab_count": "grains in 50 d < z < 70 d",
+    "density_drop": "grains the slab lost since the start",
+    "density_drop_fraction": "the same as a share",
+    "*_over_outflow": "1 in steady flow",
+    "flux_*": "through that height",
+}
+NEEDS = {"*": ("height", "outflow")}
 
 
 def slab_counts(run):

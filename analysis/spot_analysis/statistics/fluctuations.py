@@ -5,6 +5,9 @@ import numpy as np
 
 from .snapshot import LAG_TAU, TIME_TOLERANCE
 
+MEANING = {"outflow_fano": "variance over mean of counts in 2 tau; Poisson 1"}
+NEEDS = {"*": ("outflow", "pairs")}
+
 
 def fano_factor(sums):
     """Variance over mean of counts, (...), from sums (..., 3) of counts, squares and ones: 1 for a Poisson process."""

@@ -7,6 +7,13 @@ from .fits import fit_line
 
 NAME = "free_surface"
 STEP = 2.5  # d
+MEANING = {
+    "surface_angle": "of the free surface, mean",
+    "surface_angle_last": "at the last common time",
+    "surface_height_axis": "highest grain, |x| < 2.5 d, then",
+    "surface_height_wall": "highest grain within 2.5 d of a side wall, then",
+}
+NEEDS = {"*": ("grains",)}
 
 
 def places(container):

@@ -10,6 +10,8 @@ from .value import Value
 HEIGHTS = (30, 60, 90)  # d
 FIRST = 1.0  # tau; a first snapshot after it may be after the front
 COVER = 5  # d of packing that must be left above a height
+MEANING = {"arrival_*": "half the final flux reaches that height"}
+NEEDS = {"*": ("start", "steady", "end")}
 
 
 def arrival(times, above, final):

@@ -10,6 +10,12 @@ from .value import Value
 NAME = "mixing"
 LAYER = 10.0  # d; layers whose grains count as different
 BAND = 2.0  # d; bands of starting height that drained grains are counted in
+MEANING = {
+    "unlike_neighbours": "share that started in another layer of 10 d",
+    "drained_height_mean": "starting height of the drained grains",
+    "drained_height_spread": "its standard deviation",
+}
+NEEDS = {"unlike_neighbours": ("structure",), "*": ("outflow",)}
 
 
 def unlike_share(bonds, layers):

@@ -8,6 +8,17 @@ import numpy as np
 from .structure import packing_fraction
 from .value import Value
 
+MEANING = {
+    "packing_fraction": "in the structure region",
+    "contacts_per_grain": "grains that overlap a grain there",
+    "badness": "sum of squared overlaps a grain there",
+    "badness_ratio": "spot over DEM",
+    "largest_overlap_region": "there, mean over snapshots",
+    "largest_overlap": "anywhere above z = 0",
+    "largest_wall_overlap": "of a grain with walls or base",
+}
+NEEDS = {"*": ("grains", "structure")}
+
 
 def fractions(run):
     """(T,) packing fraction; not a number where the region is not full."""

@@ -22,6 +22,8 @@ NAME = "particle_diffusion"
 DROPS = np.arange(1.0, 6.0)  # d; below, grains rattle in their cages
 LAGS = 14  # steps in which grains drop by 5 d, with some to spare
 BOTTOM, TOP = 25.0, 66.0  # d; lower down streamlines converge too fast to take the mean flow out
+MEANING = {"particle_diffusion": "b_p, from drops of 1-5 d"}
+NEEDS = {"*": ("pairs", "core")}
 
 
 def lagged_moments(step, later):

@@ -12,6 +12,14 @@ HEIGHTS = (10, 20, 30, 40, 50, 60)  # d, reported
 MOMENTS = (10, 30, 50)  # d; second moments, which the shape of the tails enters
 LINE = (10, 40)  # d; heights that the line is fitted through
 WALL = 1.0  # d left out at each wall
+MEANING = {
+    "profile_variance_slope": "of the second moment over z, 10-40 d",
+    "variance_slope": "of gaussian_variance over z, 10-40 d; 2 b_s",
+    "variance_intercept": "of the same line",
+    "profile_variance_*": "second moment of the profile of v_z across x",
+    "gaussian_variance_*": "of the Gaussian that fits this profile",
+}
+NEEDS = {"*": ("height", "pairs")}
 
 
 def kept_bins(edges):

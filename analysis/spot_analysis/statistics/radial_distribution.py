@@ -14,6 +14,16 @@ CONTACT_PEAK = (0.95, 1.05)  # d; told apart, since its height depends on stiffn
 MINIMUM_BETWEEN = (1.2, 1.6)  # d
 ORDER_PEAKS = {"sqrt3": 3**0.5, "2": 2.0}  # d; grow as grains order (2006)
 PEAK_HALF_WIDTH = 0.051  # d
+MEANING = {
+    "rdf_contact_peak": "g(r) in 0.95 d < r < 1.05 d",
+    "rdf_first_minimum": "of g(r)",
+    "rdf_at_sqrt3": "g(r) around sqrt(3) d; grows with order",
+    "rdf_at_2": "g(r) around 2 d; grows with order",
+    "rdf_l2_initial": "rms change of g(r) since the start, r > 1.05 d",
+    "rdf_l2": "rms difference of g(r), spot and DEM",
+    "rdf_l2_ratio": "rdf_l2 over DEM's rdf_l2_initial",
+}
+NEEDS = {"*": ("structure",)}
 
 
 def rdf_counts(pairs, edges=RDF_EDGES):

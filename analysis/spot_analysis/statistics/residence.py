@@ -7,6 +7,11 @@ NAME = "residence"
 LEVELS = np.array([10.0, 20.0])  # d
 EDGES = np.linspace(0, 120, 61)  # tau
 QUANTILES = (0.16, 0.5, 0.84)
+MEANING = {
+    "residence_median_*": "time from that level to the orifice",
+    "residence_spread_*": "half of its 16 % to 84 % range",
+}
+NEEDS = {"*": ("outflow", "height")}
 
 
 class Measurement:

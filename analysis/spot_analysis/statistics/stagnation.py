@@ -6,6 +6,8 @@ import numpy as np
 HEIGHTS = (5, 10, 20, 30)  # d
 SHARE = 0.05  # of the velocity on the axis, below which grains count as stagnant
 AXIS = 3.0  # d; the velocity on the axis is the mean over |x| < AXIS
+MEANING = {"stagnant_boundary_*": "|x| where v_z falls to 5 % of the axis"}
+NEEDS = {"*": ("height", "pairs")}
 
 
 def boundary(counts, sums, edges):

@@ -12,6 +12,12 @@ NAME = "thickness"
 BIN = 0.125  # d
 NEAR_WALL = 1.0  # d
 SPEED_REBIN = 4
+MEANING = {
+    "speed_wall_over_middle": "v_z within 1 d of a wall over that in |y| < half",
+    "packing_fraction_middle": "in the middle half of the thickness",
+    "packing_wall_over_middle": "within 1 d of a wall over that",
+}
+NEEDS = {"*": ("structure", "pairs")}
 
 
 class Measurement:

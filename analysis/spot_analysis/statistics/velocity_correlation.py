@@ -20,6 +20,12 @@ from .value import Value
 NAME = "velocity_correlation"
 BOTTOM, TOP = 50.0, 66.0  # d; as high as 2006's region is wide, where DEM flows steadily from 40 tau on
 EDGES = np.linspace(1, 6, 21)  # d; grains do not come closer, spots do not reach further
+MEANING = {
+    "correlation_length": "beta of C(r) = alpha exp(-r/beta), 1-6 d",
+    "correlation_amplitude": "alpha",
+    "correlation_rms": "rms difference of C(r), 1-6 d",
+}
+NEEDS = {"*": ("pairs", "core")}
 
 
 def frame_sums(middle, w):

@@ -14,6 +14,12 @@ PERIOD = 10.0  # tau between two packings whose cells are made
 MAP_CELL = 2.0  # d
 MAP_TOP = 70.0  # d
 GRAIN = math.pi / 6
+MEANING = {
+    "voronoi_fraction": "mean over grains of pi/6 over cell volume",
+    "voronoi_fraction_spread": "its standard deviation over grains",
+    "voronoi_map_rms": "rms difference of the maps, cells of 2 d",
+}
+NEEDS = {"*": ("cells", "structure")}
 
 
 class Measurement:
