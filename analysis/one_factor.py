@@ -18,6 +18,7 @@ import numpy as np  # noqa: E402  (only after the check above)
 
 from spot_analysis.base.errors import AnalysisError  # noqa: E402
 from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.log import reason_of_failure  # noqa: E402
 from spot_analysis.reading.scene import load_scene  # noqa: E402
 from spot_analysis.report import comparison  # noqa: E402
 from spot_analysis.statistics import (bond_angles, bond_order, counts, front, packing, particle_diffusion,  # noqa: E402
@@ -102,9 +103,7 @@ def run_deck(options, choice, seed):
         done = subprocess.run([*shlex.split(options.lmp), "-in", os.path.basename(options.deck), "-log", "none", *words],
                               cwd=os.path.dirname(os.path.abspath(options.deck)), capture_output=True, text=True)
         if done.returncode != 0:
-            lines = (done.stdout + done.stderr).strip().splitlines() or ["no output"]
-            reason = next((line for line in lines if line.startswith("ERROR")), lines[-1])
-            raise AnalysisError(f"lmp failed on '{choice}': {reason}")
+            raise AnalysisError(f"lmp failed on '{choice}': {reason_of_failure(done.stdout + done.stderr)}")
         measure_dumps(dumps, load_scene(dumps), name, {"source": choice}, command_line.print_warning,
                                MEASURED).save(stored)
         if not options.dumps:

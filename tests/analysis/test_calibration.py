@@ -2,8 +2,6 @@
 """calibrate.py from dumps to parameters, on points that move in the mean as among spots and are kicked in spheres."""
 
 import json
-import os
-import subprocess
 import sys
 
 import numpy as np
@@ -21,7 +19,7 @@ from spot_analysis.report import calibration_output
 from spot_analysis.statistics.bootstrap import RESAMPLES
 from spot_analysis.statistics.measuring import measure_dumps
 
-from conftest import ANALYSIS
+from conftest import ANALYSIS, script
 
 SCENE = {"program": "synthetic", "diameter": 1.0, "gravity": 1.0, "timestep": 0.01,
          "half_width_x": 25.0, "half_depth_y": 4.0, "orifice_radius": 4.0}
@@ -29,7 +27,6 @@ TIMES = np.arange(40, 70.1, 2.0)
 FLOW, DENSITY, SPREADING, RADIUS, MISSING = 50.0, 0.8, 0.7, 2.6, 440  # spreading so little that no wall is felt
 KICKS, KICK = 3000, 0.0126  # spheres a step; standard deviation, d
 KICKED = np.array([[-14, -3, 8], [14, 3, 78]])  # where their centres lie
-COMMAND = (sys.executable, "-B", str(ANALYSIS / "calibrate.py"))
 
 
 def flow_of_spots(x, z):
@@ -70,15 +67,11 @@ def dumps(tmp_path_factory):
     return folder
 
 
-def script(*arguments):
-    return subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True, env={**os.environ})
-
-
 @pytest.fixture(scope="module")
 def result(dumps, tmp_path_factory):
     folder = tmp_path_factory.mktemp("result")
     files = [folder / name for name in ("parameters", "calibration.json", "plots")]
-    done = script(dumps, "--response", "2006", "--buffer", 1, "-o", files[0], "--json", files[1], "--plots", files[2])
+    done = script("calibrate.py", dumps, "--response", "2006", "--buffer", 1, "-o", files[0], "--json", files[1], "--plots", files[2])
     assert done.returncode == 0, done.stderr
     return done, json.loads(files[1].read_text()), files
 
@@ -158,7 +151,7 @@ def test_plots(result):
 
 
 def fails(*arguments):
-    done = script(*arguments)
+    done = script("calibrate.py", *arguments)
     assert done.returncode == 1 and "Traceback" not in done.stderr
     last = done.stderr.strip().splitlines()[-1]
     assert last.startswith("error: "), done.stderr
@@ -236,16 +229,16 @@ def test_failing_runs_are_refused(measured, tmp_path):
     nothing = stored_response("2006")
     deck = str(ANALYSIS.parent / "examples" / "silo" / "in.silo_spot")
 
-    def refine(lmp, deck=deck):
+    def refined(lmp, deck=deck):
         return refine(measured, nothing, 1, deck, lmp, 90)
 
     with pytest.raises(CalibrationError, match="lmp failed on .*: ERROR: no fix spot"):
-        refine(fake_lmp(tmp_path, "print('LAMMPS')\nprint('ERROR: no fix spot')\nsys.exit(1)"))
+        refined(fake_lmp(tmp_path, "print('LAMMPS')\nprint('ERROR: no fix spot')\nsys.exit(1)"))
     with pytest.raises(CalibrationError, match="cannot run absent-lmp: No such file"):
-        refine("absent-lmp")
+        refined("absent-lmp")
     (tmp_path / "in.other").write_text("units si\n")
     with pytest.raises(CalibrationError, match="0 commands 'fix ID group spot'"):
-        refine("lmp", str(tmp_path / "in.other"))
+        refined("lmp", str(tmp_path / "in.other"))
 
 
 def test_deck_for_a_refinement():

@@ -4,8 +4,6 @@ dumps that are none. Whatever cannot be measured is absent, and said; what would
 
 import gzip
 import json
-import subprocess
-import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,7 +18,7 @@ from spot_analysis.statistics.interval import choose_interval
 from spot_analysis.statistics.interval_view import IntervalView
 from spot_analysis.statistics.measuring import measure_dumps
 
-from conftest import ANALYSIS
+from conftest import script
 from synthetic import SCENE, frame_text, write_text
 
 SILO = {**SCENE, "orifice_radius": 4.0}
@@ -60,10 +58,6 @@ def measured(source):
     """RunStatistics and the warnings."""
     warnings = []
     return measure_dumps(source, load_scene(source), warn=warnings.append), warnings
-
-
-def script(name, *arguments):
-    return subprocess.run([sys.executable, "-B", str(ANALYSIS / name), *map(str, arguments)], capture_output=True, text=True)
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import AnalysisError
-from ..statistics.bootstrap import BLOCK_TAU, MINIMUM_BLOCKS, RESAMPLES, block_sums
+from ..statistics.bootstrap import BLOCK_TAU, MINIMUM_BLOCKS, block_sums, resampled
 
-SEED = 20060513
 LOST_REPLICATES = 0.02  # share of resamples in which a fit may end at the border of its table
 
 
@@ -49,8 +48,7 @@ def estimate(times, samples, span, statistic):
     samples : (n, f)
     statistic : maps (..., f) to (...) or (..., k)
 
-    Estimates over the same span resample the same blocks, so what they have in common cancels in ``combine``. A
-    resample of k blocks varies by (k-1)/k of the variance of independent blocks, which the factor puts right.
+    Estimates over the same span resample the same blocks, so what they have in common cancels in ``combine``.
     Raises CalibrationError with fewer than MINIMUM_BLOCKS blocks.
     """
     sums = block_sums(times, np.asarray(samples, dtype=float), span)
@@ -58,8 +56,7 @@ def estimate(times, samples, span, statistic):
     if blocks < MINIMUM_BLOCKS:
         raise CalibrationError(f"only {blocks} blocks of {BLOCK_TAU:g} tau between {span[0]:g} and {span[1]:g} tau; "
                                f"a standard error needs {MINIMUM_BLOCKS}")
-    weights = np.random.default_rng(SEED).multinomial(blocks, np.full(blocks, 1 / blocks), size=RESAMPLES)
-    value, values = statistic(sums.sum(axis=0)), statistic(weights @ sums)
+    value, values = statistic(sums.sum(axis=0)), statistic(resampled(sums))
     return Estimate(value, value + (values - _known_mean(values)) * np.sqrt(blocks / (blocks - 1)))
 
 

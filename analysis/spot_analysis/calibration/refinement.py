@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 
 from ..base.progress import Progress
+from ..reading.log import reason_of_failure
 from ..reading.scene import load_scene
 from ..statistics.interval import STEADY_FROM
 from ..statistics.measuring import measure_dumps
@@ -79,9 +80,7 @@ def run_deck(deck, lmp, variables, folder, duration, words, progress):
         raise CalibrationError(f"cannot run {lmp}: {error.strerror}") from error
     if process.returncode != 0:
         with open(log, encoding="utf-8", errors="replace") as output:
-            lines = output.read().strip().splitlines() or ["no output"]
-        reason = next((line for line in lines if line.startswith("ERROR")), lines[-1])
-        raise CalibrationError(f"lmp failed on {deck}: {reason}")
+            raise CalibrationError(f"lmp failed on {deck}: {reason_of_failure(output.read())}")
     progress.finish(f"{duration:g} tau run")
 
 

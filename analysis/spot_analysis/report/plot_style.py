@@ -12,6 +12,11 @@ PAPER_STYLE = {"color": "0.5", "linewidth": 1, "linestyle": ":"}
 TIME_LABEL = r"time ($\tau$)"
 
 
+def line_style(name):
+    """The style of a run without markers, for fits and curves of many points."""
+    return {"color": STYLE[name]["color"], "linestyle": STYLE[name].get("linestyle", "-")}
+
+
 def note_missing_data(axes):
     """Say so where neither run has anything to show, as in a silo that is too low."""
     for axis in axes:

@@ -7,7 +7,7 @@ from matplotlib import pyplot as plt
 from ..statistics import mixing, particle_diffusion, profile_width, residence, stagnation, velocity_correlation
 from ..statistics.fits import fit_line
 from .papers import PAPERS
-from .plot_style import PAPER_STYLE, STYLE, TIME_LABEL, mark_interval, note_missing_data
+from .plot_style import PAPER_STYLE, STYLE, TIME_LABEL, line_style, mark_interval, note_missing_data
 
 PROFILES = (10, 20, 30, 40, 50, 60)  # d
 
@@ -22,8 +22,7 @@ def velocity_profiles(views):
             x = np.linspace(edges[0], edges[-1], 201)
             style = {**STYLE[name], "linestyle": "none"}
             axis.plot((edges[1:] + edges[:-1]) / 2, profile_width.mean_profile(view, index), label=name, **style)
-            axis.plot(x, profile_width.fitted_gaussian(view, index, x), color=STYLE[name]["color"], linewidth=1,
-                      linestyle=STYLE[name].get("linestyle", "-"))
+            axis.plot(x, profile_width.fitted_gaussian(view, index, x), **line_style(name), linewidth=1)
         axis.set_title(f"$z = {height:g}\\,d$", fontsize=10)
         axis.set_ylim(0, None)
     note_missing_data(axes.flat)
@@ -43,8 +42,7 @@ def profile_variance(views):
         heights, variances = profile_width.mean_variances(view)
         slope, intercept = profile_width.line(heights, variances)
         axis.plot(heights, variances, label=name, **{**STYLE[name], "linestyle": "none", "markersize": 4})
-        axis.plot(z, slope * z + intercept, color=STYLE[name]["color"], linewidth=1,
-                  linestyle=STYLE[name].get("linestyle", "-"))
+        axis.plot(z, slope * z + intercept, **line_style(name), linewidth=1)
     axis.plot(z, PAPERS["variance_slope"][0] * z + PAPERS["variance_intercept"][0], label="DEM of 2006", **PAPER_STYLE)
     note_missing_data([axis])
     axis.axvspan(*profile_width.LINE, color="0.93", zorder=-1)
@@ -64,8 +62,7 @@ def correlation(views):
         alpha, beta = velocity_correlation.fit(curve)
         axis.plot(velocity_correlation.middles(), curve, label=f"{name}: $\\beta = {beta:.2f}\\,d$",
                   **{**STYLE[name], "linestyle": "none"})
-        axis.plot(r, alpha * np.exp(-r / beta), color=STYLE[name]["color"], linewidth=1,
-                  linestyle=STYLE[name].get("linestyle", "-"))
+        axis.plot(r, alpha * np.exp(-r / beta), **line_style(name), linewidth=1)
     note_missing_data([axis])
     axis.axhline(0, color="0.8", linewidth=0.8, zorder=0)
     axis.set(xlabel="$r$ ($d$)", ylabel="$C(r)$ of $v_x$", xlim=(0, velocity_correlation.EDGES[-1]))
@@ -91,8 +88,7 @@ def diffusion(views):
         slope, intercept = fit_line(drops, variances)
         axis.plot(drops, variances, label=f"{name}: $b_p = {1000 * slope / 2:.2f} \\times 10^{{-3}}\\,d$",
                   **{**STYLE[name], "linestyle": "none", "markersize": 4})
-        axis.plot(line, intercept + slope * line, color=STYLE[name]["color"], linewidth=1,
-                  linestyle=STYLE[name].get("linestyle", "-"))
+        axis.plot(line, intercept + slope * line, **line_style(name), linewidth=1)
     axis.plot(line, 2 * PAPERS["particle_diffusion"][0] * line, label="slope of DEM, 2006", **PAPER_STYLE)
     axis.set(xlabel="drop ($d$)", ylabel="variance of $x$ ($d^2$)", xlim=(0, line[-1]), ylim=(0, None))
     _legend(axis)
@@ -120,7 +116,7 @@ def residence_times(views):
     for index, (axis, level) in enumerate(zip(axes, residence.LEVELS)):
         for name, view in views.items():
             axis.step(middle, residence.distribution(view, index), where="mid", label=name,
-                      color=STYLE[name]["color"], linestyle=STYLE[name].get("linestyle", "-"))
+                      **line_style(name))
         axis.set_title(f"from $z = {level:g}\\,d$ to the orifice", fontsize=10)
         axis.set(xlabel=r"residence time ($\tau$)", ylabel=r"share (1/$\tau$)", ylim=(0, None))
     note_missing_data(axes)
@@ -135,8 +131,7 @@ def layers(views):
     for name, view in views.items():
         height, lost = mixing.drained(view)
         highest = max(highest, height[lost > 0].max(initial=0))
-        left.step(height, lost, where="mid", label=name, color=STYLE[name]["color"],
-                  linestyle=STYLE[name].get("linestyle", "-"))
+        left.step(height, lost, where="mid", label=name, **line_style(name))
         part = view.run.measured[mixing.NAME]
         shared = np.isin(part.times, view.run.times[view.common])
         right.plot(part.times[shared], part.unlike[shared], label=name, **STYLE[name])

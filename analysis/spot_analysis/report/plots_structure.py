@@ -8,7 +8,7 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
 from ..statistics import bond_angles, bond_order, free_surface, radial_distribution, thickness, voronoi
 from ..statistics.packing import fractions
-from .plot_style import STYLE, TIME_LABEL, mark_interval, note_missing_data
+from .plot_style import STYLE, TIME_LABEL, line_style, mark_interval, note_missing_data
 
 START_STYLE = {"color": "0.6", "linewidth": 1.2}
 LATE = plt.get_cmap("viridis")
@@ -41,7 +41,7 @@ def radial(views):
             r = radial_distribution.middles(view.run)
             if name == "DEM":
                 axis.plot(r, radial_distribution.initial_rdf(view), label="DEM, at the start", **START_STYLE)
-            axis.plot(r, radial_distribution.mean_rdf(view), label=name, **_line(name))
+            axis.plot(r, radial_distribution.mean_rdf(view), label=name, **line_style(name), linewidth=1.2)
         axis.axhline(1, color="0.8", linewidth=0.8, zorder=0)
         axis.set(xlabel="$r$ ($d$)", ylabel="$g(r)$")
     note_missing_data(axes)
@@ -51,11 +51,6 @@ def radial(views):
     return figure
 
 
-def _line(name):
-    """The style of a run without markers, for curves of many points."""
-    return {"color": STYLE[name]["color"], "linestyle": STYLE[name].get("linestyle", "-"), "linewidth": 1.2}
-
-
 def angles(views):
     """g3 at the start and over the interval."""
     figure, axis = plt.subplots(figsize=(4.5, 3.4), constrained_layout=True)
@@ -63,7 +58,7 @@ def angles(views):
     for name, view in views.items():
         if name == "DEM":
             axis.plot(middle, bond_angles.initial_density(view), label="DEM, at the start", **START_STYLE)
-        axis.plot(middle, bond_angles.mean_density(view), label=name, **_line(name))
+        axis.plot(middle, bond_angles.mean_density(view), label=name, **line_style(name), linewidth=1.2)
     note_missing_data([axis])
     axis.set(xlabel=r"bond angle $\theta$ (degrees)", ylabel=r"$g_3(\theta)$ (1/degree)", xlim=(30, 180), ylim=(0, None))
     axis.legend(frameon=False)
@@ -120,7 +115,7 @@ def across_thickness(views):
     """Packing fraction and velocity from wall to wall."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), constrained_layout=True)
     for name, view in views.items():
-        left.plot(*thickness.fraction_profile(view), label=name, **_line(name))
+        left.plot(*thickness.fraction_profile(view), label=name, **line_style(name), linewidth=1.2)
         right.plot(*thickness.speed_profile(view), label=name, **STYLE[name])
     left.set(xlabel="$y$ ($d$)", ylabel="packing fraction", ylim=(0, None))
     right.set(xlabel="$y$ ($d$)", ylabel=r"$-v_z$ ($d/\tau$)", ylim=(0, None))

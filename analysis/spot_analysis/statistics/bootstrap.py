@@ -6,6 +6,7 @@ import numpy as np
 BLOCK_TAU = 6.0
 MINIMUM_BLOCKS = 4
 RESAMPLES = 1000
+SEED = 20060513
 
 
 def block_sums(times, samples, span, block=BLOCK_TAU):
@@ -25,17 +26,23 @@ def block_sums(times, samples, span, block=BLOCK_TAU):
     return sums
 
 
-def bootstrap_error(sums, statistic, seed=20060513):
+def resampled(sums):
+    """Sums (RESAMPLES, f) of as many blocks, drawn from those of ``block_sums``, (k, f). Which ones are drawn depends on k only.
+
+    What follows from them varies by (k-1)/k of the variance of independent blocks: the root of k / (k-1) puts that right.
+    """
+    blocks = len(sums)
+    weights = np.random.default_rng(SEED).multinomial(blocks, np.full(blocks, 1 / blocks), size=RESAMPLES)
+    return weights @ sums
+
+
+def bootstrap_error(sums, statistic):
     """Standard error of ``statistic`` (of summed samples), or None with fewer than MINIMUM_BLOCKS blocks.
 
     sums : (k, f) of ``block_sums``
     statistic : maps (..., f) to (...)
-
-    A resample of k blocks varies by (k-1)/k of the variance of independent blocks: the factor puts that right.
     """
     blocks = len(sums)
     if blocks < MINIMUM_BLOCKS:
         return None
-    weights = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1 / blocks), size=RESAMPLES)
-    values = statistic(weights @ sums)
-    return float(np.std(values) * np.sqrt(blocks / (blocks - 1)))
+    return float(np.std(statistic(resampled(sums))) * np.sqrt(blocks / (blocks - 1)))
