@@ -561,7 +561,7 @@ void FixSpot::tell_all_who_leaves() {
   spot::Bytes own;
   spot::append(own, model->leaving);
   model->leaving.clear();
-  for (const spot::Bytes &bytes : model->ranks->exchange(std::vector<spot::Bytes>(comm->nprocs, own)))
+  for (const spot::Bytes &bytes : model->ranks->share_with_all(own))
     for (const tagint grain : spot::ByteReader(bytes).take_all<tagint>()) model->leaving.push_back(grain);
 }
 

@@ -112,7 +112,7 @@ TEST(DilationFieldAnalytic, OneSpotDilatesByItsVolumeInAll) {
   }
 }
 
-TEST(DilationFieldUnit, PaceIsTheSquareOfTheDilationWithinBounds) {
+TEST(DilationFieldUnit, RelativeSpeedIsTheSquareOfTheDilationWithinBounds) {
   SpotParameters spots = dilating_spots();
   const auto silo = scenes::small_silo(6.0, 6.0);
   const double spacing = 12.0 / 20;
@@ -123,7 +123,7 @@ TEST(DilationFieldUnit, PaceIsTheSquareOfTheDilationWithinBounds) {
     DilationField field(spots, *silo, 1.0);
     field.count(places, alone);
     const double expected = ratio < 0.3 ? DilationField::slowest : ratio > 2.0 ? DilationField::fastest : ratio * ratio;
-    EXPECT_NEAR(field.pace({0.0, 0.0, 15.0}) / expected, 1.0, 0.05) << ratio;
+    EXPECT_NEAR(field.relative_speed({0.0, 0.0, 15.0}) / expected, 1.0, 0.05) << ratio;
   }
 }
 
@@ -131,10 +131,10 @@ TEST(DilationFieldUnit, NoSpotsAndNoRoom) {
   const auto silo = scenes::small_silo(6.0, 6.0);
   Alone alone;
   DilationField field(dilating_spots(), *silo, 1.0);
-  EXPECT_EQ(field.pace({0, 0, 15}), DilationField::slowest);
+  EXPECT_EQ(field.relative_speed({0, 0, 15}), DilationField::slowest);
   field.count({}, alone);
   EXPECT_EQ(field.at({0, 0, 15}), 0.0);
-  EXPECT_EQ(field.pace({0, 0, -20}), DilationField::fastest);  // where no grain can be
+  EXPECT_EQ(field.relative_speed({0, 0, -20}), DilationField::fastest);  // where no grain can be
 }
 
 TEST(DilationFieldUnit, OtherWallsLeaveOtherVolumes) {
