@@ -23,6 +23,7 @@
 #include "spot/base/memory.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
+#include "spot_calibration.h"
 #include "spot_command.h"
 
 #include <algorithm>
@@ -225,11 +226,10 @@ void FixSpot::choose_window() {
   const bool steps = update->nsteps > 0;
   double window = command.window.value_or(update->dt);
   if (!command.window && !*command.time_ordered) {
-    // Longer windows relax more of the neighbouring cells at the same time, which is both cheaper and closer to DEM,
-    // until grains go too far in one (analysis/README.md).
     const double flow =
         spot::WindowedDrainage::flow_through_orifice(command.spots, 1.0, model->diameter, command.orifice->radius);
-    const double longest = std::min(0.32 * model->diameter / command.spots.speed, 0.15 / flow);
+    const double longest = std::min(calibration::climb_in_a_window * model->diameter / command.spots.speed,
+                                    calibration::flow_in_a_window / flow);
     window = update->dt / std::ceil(update->dt / longest - 1e-9);
   }
   if (window != model->window) model->drainage.reset();  // in which there have been no windows yet

@@ -7,6 +7,7 @@
 
 #include "packing/packed_grain.hpp"
 #include "spot/packing/displacement.hpp"
+#include "spot/relaxation/calibration.hpp"
 
 namespace spot {
 
@@ -110,8 +111,8 @@ bool TimeOrderedDrainage::relaxes_around(const Move& move) const {
 void TimeOrderedDrainage::relax(const std::vector<std::uint32_t>& grains) {
   const double deepest = relaxation_.sweep(packing_, container(), grains);
   count_sweep(grains.size());
-  // Pushes that make overlaps much deeper start from deep ones.
-  if (!relaxes_every_move() || deepest <= 0.25 * limits().overlap_allowed()) return;
+  if (!relaxes_every_move() || deepest <= calibration::part_of_overlap_to_look_from * limits().overlap_allowed())
+    return;
   packing_.update_lists(container());
   checks().require_no_collapse(packing_.largest_overlap(grains));
 }

@@ -7,22 +7,12 @@
 
 #include "spot/base/errors.hpp"
 #include "spot/base/memory.hpp"
+#include "spot/relaxation/calibration.hpp"
+#include "spot/walk/calibration.hpp"
 
 namespace spot {
 
 namespace {
-
-/// Most sweeps of a cell in one window; what is left over waits for the next.
-constexpr int most_sweeps = 16;
-
-/// A cell with an overlap deeper than this, in diameters, is due once more. DEM's deepest is 0.013.
-constexpr double deepest_overlap = 0.02;
-
-/// Windows after which all grains are looked at for overlaps, which costs less than 1 % of the run time.
-constexpr std::int64_t windows_between_looks = 64;
-
-/// Windows after which ranks see whether layers should be shared out anew. Their spots follow in the next window.
-constexpr std::int64_t windows_between_balances = 16;
 
 /// In a window spots climb no farther than this, in diameters: coordinates wrap around after 256 of them. And no less
 /// than this, or time hardly goes on.
@@ -31,15 +21,11 @@ constexpr double highest_climb = 64.0, least_climb = 1e-6;
 /// Of one spot, and of all, in a window.
 constexpr double most_steps = 1e6, most_births = 1e7;
 
-/// How far the grains over the orifice go in a window, in diameters, on average: farther, and they pass through the
-/// base before they are relaxed.
-constexpr double longest_flow = 1.0;
-
 }  // namespace
 
 double WindowedDrainage::flow_through_orifice(const SpotParameters& spots, double time, double diameter,
                                               double orifice_radius) {
-  constexpr double packing_fraction = 0.58;
+  constexpr double packing_fraction = calibration::packing_fraction_of_flow;
   const double radii = spots.equivalent_radius() / diameter, orifice = orifice_radius / diameter;
   const double enclosed =
       spots.fixed_volume > 0.0 ? spots.fixed_volume : 8.0 * packing_fraction * radii * radii * radii;
@@ -64,8 +50,8 @@ void WindowedDrainage::require_fitting_window() const {
   require(highest, highest_climb, "diameters are climbed by spots");
   require(clock * spot_parameters().fastest() / spot_parameters().step_height, most_steps, "steps are taken by a spot");
   require(clock * spot_parameters().injection_rate, most_births, "spots are born");
-  require(flow_through_orifice(spot_parameters(), clock, diameter(), container().orifice().radius), longest_flow,
-          "diameters pass the orifice");
+  require(flow_through_orifice(spot_parameters(), clock, diameter(), container().orifice().radius),
+          calibration::longest_flow_in_a_window, "diameters pass the orifice");
 }
 
 double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tolerance, double diameter) {
@@ -115,7 +101,8 @@ void WindowedDrainage::advance_to(double time) {
     remove_spots_above();
     relax();
     take_out_drained();
-    if (communicator_->size() > 1 && windows_ % windows_between_balances == 0) packing_.balance(container());
+    if (communicator_->size() > 1 && windows_ % calibration::windows_between_balances == 0)
+      packing_.balance(container());
   }
 }
 
@@ -176,16 +163,15 @@ Counters WindowedDrainage::total() {
 
 void WindowedDrainage::relax() {
   double overlap = 0.0;
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    // Once a window only: a cell that is swept over and over on its own is pushed into its neighbours.
-    const double deepest = sweep == 0 ? deepest_overlap : std::numeric_limits<double>::infinity();
+  for (int sweep = 0; sweep < calibration::most_sweeps_in_a_window; ++sweep) {
+    const double deepest = sweep == 0 ? calibration::overlap_relaxed_again : std::numeric_limits<double>::infinity();
     const std::size_t swept = packing_.sweep(relaxation_parameters(), due_, deepest, container(), *workers_);
     if (swept == 0) break;
     count_sweep(swept);
     overlap = std::max(overlap, packing_.overlap_swept());
   }
   // Sweeps do not see cells that are not due.
-  if (overlap > limits().overlap_allowed() || windows_ % windows_between_looks == 0)
+  if (overlap > limits().overlap_allowed() || windows_ % calibration::windows_between_looks == 0)
     checks().require_no_collapse(packing_.largest_overlap());
 }
 

@@ -7,6 +7,7 @@
 
 #include "spot/base/errors.hpp"
 #include "spot/base/memory.hpp"
+#include "spot/walk/calibration.hpp"
 
 namespace spot {
 
@@ -136,7 +137,7 @@ double DilationField::at(const Vector3& point) const {
 
 double DilationField::relative_speed(const Vector3& point) const {
   const double ratio = at(point) / reference_;
-  return std::clamp(ratio * ratio, slowest, fastest);
+  return std::clamp(ratio * ratio, calibration::slowest_relative_speed, calibration::fastest_relative_speed);
 }
 
 void DilationField::replace_container(const Container& container) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "spot/base/memory.hpp"
+#include "spot/walk/calibration.hpp"
 #include "walk/packed_spot.hpp"
 
 namespace spot {
@@ -14,7 +15,7 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       next_birth_(walk_.time_before_birth(0)),
       dilates_(parameters.dilation > 0.0),
       dilation_(parameters, container, diameter),
-      setting_interval_(dilates_ ? 0.1 * parameters.radius / parameters.speed : 0.0) {}
+      setting_interval_(dilates_ ? calibration::climb_between_settings * parameters.radius / parameters.speed : 0.0) {}
 
 /// Returns whether the newborn spot was kept.
 bool Spots::bear_next(const Container& container, const Belongs& here) {

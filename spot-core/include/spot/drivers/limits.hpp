@@ -8,16 +8,16 @@
 
 #include "spot/geometry/container.hpp"
 #include "spot/packing/packing.hpp"
+#include "spot/relaxation/calibration.hpp"
 
 namespace spot {
 
 /// How a drainage starts and ends.
 struct DrainageLimits {
-  double outlet;                  ///< grains with centres below this height are taken out (length)
-  double largest_overlap = 0.03;  ///< allowed in the starting packing, in diameters
-  /// What relaxation may leave behind in flow, in diameters, if no more was allowed at the start. DEM has 0.013, the
-  /// spot model 0.03 with the fitted parameters; at 0.3 a packing collapses.
-  double largest_overlap_in_flow = 0.3;
+  double outlet;  ///< grains with centres below this height are taken out (length)
+  double largest_overlap = calibration::largest_overlap_at_start;  ///< allowed in the starting packing, in diameters
+  /// What relaxation may leave behind in flow, in diameters, if no more was allowed at the start.
+  double largest_overlap_in_flow = calibration::largest_overlap_in_flow;
 
   /// Largest overlap that may stand after a relaxation, in diameters.
   double overlap_allowed() const { return std::max(largest_overlap, largest_overlap_in_flow); }

@@ -18,8 +18,8 @@ namespace spot {
 ///
 /// A packing at rest has to dilate before it can flow, and in DEM one that flows is dilated by about as much
 /// everywhere, 0.03, however fast it flows. So a spot climbs the faster the more the packing is dilated where it is: at
-/// v_s (c / c_0)^2, with c_0 = SpotParameters::dilation, but at 1/8 to 4 times v_s. That is its *relative speed*. A
-/// flow that brings more spots then has hardly more of them at a time, and starts narrow and fast, and widens as its
+/// v_s (c / c_0)^2, with c_0 = SpotParameters::dilation, within bounds (calibration.hpp). That is its *relative speed*.
+/// A flow that brings more spots then has hardly more of them at a time, and starts narrow and fast, and widens as its
 /// sides dilate.
 ///
 /// Spots are counted on the nodes of a cubic lattice R_s apart, but no closer than grains are; each is shared out
@@ -27,8 +27,6 @@ namespace spot {
 /// the same on any ranks.
 class DilationField {
  public:
-  static constexpr double slowest = 0.125, fastest = 4.0;
-
   /// `diameter`: of grains. The container must outlive the field, or be replaced.
   DilationField(const SpotParameters& parameters, const Container& container, double diameter);
 
