@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "spot/base/errors.hpp"
+#include "spot_calibration.h"
 
 using spot::InvalidParameter;
 using spot::message;
@@ -220,7 +221,7 @@ void require(bool given, const char* keyword, const char* what) {
 
 SpotCommand parse_spot_command(const std::vector<std::string>& list) {
   SpotCommand command;
-  command.spots.influence = 2.5e-3;
+  command.spots.influence = calibration::influence;
   Words words(list);
   while (!words.empty()) {
     const std::string keyword = words.keyword();
@@ -277,10 +278,10 @@ void SpotCommand::resolve(double diameter) {
   relaxation.contact_overlap = contact_overlap.value_or(chosen.contact_overlap);
   if (spots.radius == 0.0) spots.radius = spots.profile->calibrated().radius_in_diameters * diameter;
   if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
-  spots.step_width =
-      spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height, spots.persistence);
-  side_buffer = side_buffer.value_or(0.25 * diameter);
-  base_buffer = base_buffer.value_or(2.0 * diameter);
+  spots.step_width = spot::step_width_for(diffusion_length.value_or(calibration::diffusion_length * diameter),
+                                          spots.step_height, spots.persistence);
+  side_buffer = side_buffer.value_or(calibration::side_buffer * diameter);
+  base_buffer = base_buffer.value_or(calibration::base_buffer * diameter);
   outlet = outlet.value_or(orifice->centre.z());
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "spot/geometry/orifice.hpp"
+#include "spot/relaxation/calibration.hpp"
 #include "spot/walk/parameters.hpp"
 
 /// `box xlo xhi ylo yhi`: four vertical plane walls.
@@ -48,9 +49,9 @@ struct SpotCommand {
   std::optional<double> outlet;
   std::optional<double> side_buffer, base_buffer;
   std::optional<double> window;
-  double largest_overlap = 0.03;  // in diameters
-  int average = 100;              // steps over which the outflow is averaged
-  bool per_atom = false;          // output of what has become of each grain
+  double largest_overlap = spot::calibration::largest_overlap_at_start;  // in diameters
+  int average = 100;                                                     // steps over which the outflow is averaged
+  bool per_atom = false;                                                 // output of what has become of each grain
 
   SpotCommand() { spots.profile = spot::InfluenceProfile::parabolic; }
 

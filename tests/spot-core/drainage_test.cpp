@@ -30,7 +30,7 @@ using spot::RelaxationParameters;
 using spot::RelaxationSchedule;
 using spot::RelaxationStrength;
 using spot::SpotParameters;
-using spot::SpotPopulation;
+using spot::Spots;
 using spot::TimeOrderedDrainage;
 using spot::Vector3;
 using testing::AllOf;
@@ -71,10 +71,10 @@ class PlainDrainage {
   }
 
   void carry_out_moves(int number) {
-    for (int k = 0; k < number; ++k) carry_out(*population_.next_move(1e9, *container_));
+    for (int k = 0; k < number; ++k) carry_out(*population_.next_step(1e9, *container_));
   }
   void carry_out_until(double time) {
-    while (const auto move = population_.next_move(time, *container_)) carry_out(*move);
+    while (const auto move = population_.next_step(time, *container_)) carry_out(*move);
   }
   double time() const { return time_; }
   int moves() const { return moves_; }
@@ -133,7 +133,7 @@ class PlainDrainage {
       ++moved;
     }
     if (moved == 0) {
-      if (move.middle.z() > container_->orifice().centre.z() + spots_.radius) population_.remove_last_moved();
+      if (move.middle.z() > container_->orifice().centre.z() + spots_.radius) population_.remove(move.spot);
       return;
     }
     ++effective_moves_;
@@ -175,7 +175,7 @@ class PlainDrainage {
   RelaxationParameters relaxation_;
   double outlet_;
   std::shared_ptr<const Container> container_;
-  SpotPopulation population_;
+  Spots population_;
   double q_;
   std::vector<Grain> grains_, drained_;
   double time_ = 0.0;

@@ -82,13 +82,13 @@ class PlainWindows {
       if (!live.out) places.push_back(live.spot.position);
     spot::Alone alone;
     field.count(places, alone);
-    const auto set_pace = [&](spot::Spot& spot, double time) {
-      if (spots_.dilation > 0.0) walk_.set_pace(spot, time, field.pace(spot.position));
+    const auto set_speed = [&](spot::Spot& spot, double time) {
+      if (spots_.dilation > 0.0) walk_.set_relative_speed(spot, time, field.relative_speed(spot.position));
     };
-    for (Live& live : live_) set_pace(live.spot, now);
+    for (Live& live : live_) set_speed(live.spot, now);
     for (; next_birth_ <= until; next_birth_ += walk_.time_before_birth(++born_)) {
       live_.push_back({walk_.birth(born_, next_birth_, *silo_), false});
-      set_pace(live_.back().spot, next_birth_);
+      set_speed(live_.back().spot, next_birth_);
     }
     for (Live& live : live_) {
       while (live.spot.next_step <= until && !live.out)

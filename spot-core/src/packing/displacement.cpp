@@ -3,24 +3,19 @@
 
 #include <algorithm>
 
+#include "spot/walk/calibration.hpp"
+
 namespace spot {
 
-namespace {
-
-/// A spot at the surface with fewer grains would throw them about.
-constexpr double fewest_grains = 20.0;
-
-}  // namespace
-
 double largest_weight(const SpotParameters& parameters) {
-  return std::max(1.0, parameters.fixed_volume / fewest_grains);
+  return std::max(1.0, parameters.fixed_volume / calibration::least_enclosed);
 }
 
 double fixed_volume_weight(const SpotParameters& parameters, double height, int shares) {
   if (parameters.fixed_volume == 0.0) return 1.0;
   const double part = parameters.profile->part_above(height / parameters.radius);
   const double grains = static_cast<double>(shares) / whole_share;
-  return parameters.fixed_volume * part / std::max(grains, fewest_grains * part + 1e-9);
+  return parameters.fixed_volume * part / std::max(grains, calibration::least_enclosed * part + 1e-9);
 }
 
 namespace {

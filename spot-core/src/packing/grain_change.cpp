@@ -7,7 +7,6 @@
 #include <unordered_set>
 
 #include "packing/packed_grain.hpp"
-#include "packing/to_all_ranks.hpp"
 #include "spot/base/errors.hpp"
 
 namespace spot {
@@ -21,7 +20,7 @@ std::vector<std::int64_t> of_all_ranks(const std::vector<std::int64_t>& ids, Com
   Bytes own;
   append(own, ids);
   std::vector<std::int64_t> all;
-  for (const Bytes& bytes : to_all_ranks(own, communicator))
+  for (const Bytes& bytes : communicator.share_with_all(own))
     for (const auto id : ByteReader(bytes).take_all<std::int64_t>()) all.push_back(id);
   return all;
 }
@@ -56,7 +55,7 @@ std::vector<Grain> GrainChange::stay_under_other_ids(const std::vector<Grain>& c
   Bytes own;
   for (const Grain& grain : come) append(own, grain);
   std::vector<std::int64_t> stay;
-  for (const Bytes& bytes : to_all_ranks(own, packing_.communicator()))
+  for (const Bytes& bytes : packing_.communicator().share_with_all(own))
     for (ByteReader reader(bytes); !reader.at_end();) {
       const Grain grain = take_grain(reader);
       const auto found = slot_at.find(lattice.quanta(grain.position - lattice.low()));

@@ -4,7 +4,6 @@
 
 #include "packing/grain_change.hpp"
 #include "packing/saved_layers.hpp"
-#include "packing/to_all_ranks.hpp"
 #include "packing/wrapped_integers.hpp"
 #include "spot/base/errors.hpp"
 #include "spot/packing/tiled_packing.hpp"
@@ -146,7 +145,7 @@ void TiledPacking::grow(const std::array<int, 3>& below, const std::array<int, 3
   Bytes own;
   append_layers(own, cells_, cells_.first_own_layer(), cells_.first_own_layer() + cells_.own_layers());
   SavedLayers layers;
-  for (const Bytes& bytes : to_all_ranks(own, *communicator_))
+  for (const Bytes& bytes : communicator_->share_with_all(own))
     for (ByteReader reader(bytes); !reader.at_end();) layers.take(reader, lattice);
   const CellLattice old = lattice;
   lattice.grow(below, above);

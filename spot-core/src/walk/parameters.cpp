@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "spot/base/errors.hpp"
-#include "spot/walk/dilation_field.hpp"
+#include "spot/walk/calibration.hpp"
 
 namespace spot {
 
@@ -27,10 +27,11 @@ double SpotParameters::spot_volume(double packing_fraction) const {
 
 double SpotParameters::missing_volume(double diameter) const {
   const double pi = 3.14159265358979323846;
-  return fixed_volume > 0.0 ? influence * fixed_volume * pi / 6.0 * diameter * diameter * diameter : spot_volume(0.58);
+  return fixed_volume > 0.0 ? influence * fixed_volume * pi / 6.0 * diameter * diameter * diameter
+                            : spot_volume(calibration::packing_fraction_of_flow);
 }
 
-double SpotParameters::fastest() const { return dilation > 0.0 ? speed * DilationField::fastest : speed; }
+double SpotParameters::fastest() const { return dilation > 0.0 ? speed * calibration::fastest_relative_speed : speed; }
 
 void SpotParameters::validate() const {
   if (!profile) throw InvalidParameter("spots need an influence profile");

@@ -46,7 +46,7 @@ struct SpotParameters {
   /// V_s, the free volume that one spot carries through a packing of this packing fraction (length^3).
   double spot_volume(double packing_fraction) const;
   /// The grains' own volume that one spot takes out of the packing around it: that of w N grains, with a fixed volume,
-  /// or of as many as it encloses at a packing fraction of 0.58 (length^3).
+  /// or of as many as it encloses at the packing fraction of flow (length^3).
   double missing_volume(double diameter) const;
 
   /// Throws InvalidParameter that names the first number outside its range.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/walk/spot_population.hpp"
+#include "spot/walk/spots.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using spot::Move;
 using spot::Orifice;
 using spot::Spot;
 using spot::SpotParameters;
-using spot::SpotPopulation;
+using spot::Spots;
 using spot::Vector3;
 
 const Orifice orifice{{0.5, -0.25, 2.0}, 4.0};
@@ -37,21 +37,21 @@ Vector3 end_of(const Move& move) { return move.middle + 0.5 * move.step; }
 /// Lets `number` spots take `steps` steps each, and calls visit(move, steps taken) after each of them.
 template <typename Visit>
 void walk(const SpotParameters& parameters, const Container& container, int number, int steps, Visit&& visit) {
-  SpotPopulation population(parameters, container, 1.0);
+  Spots population(parameters, container, 1.0);
   std::map<std::int64_t, int> taken;
   int done = 0;
   while (done < number) {
-    const auto move = population.next_move(1e9, container);
+    const auto move = population.next_step(1e9, container);
     const int n = ++taken[move->spot];
     if (move->spot < number) visit(*move, n);
     if (n < steps) continue;
-    population.remove_last_moved();
+    population.remove(move->spot);
     taken.erase(move->spot);
     if (move->spot < number) ++done;
   }
 }
 
-TEST(SpotPopulationUnit, StepsAreThoseOf2006) {
+TEST(SpotsUnit, StepsAreThoseOf2006) {
   const auto space = space_above_orifice();
   std::set<std::pair<double, double>> seen;
   walk(scenes::paper_spots(), *space, 100, 20, [&](const Move& move, int) {
@@ -64,12 +64,12 @@ TEST(SpotPopulationUnit, StepsAreThoseOf2006) {
   EXPECT_EQ(seen.size(), 4u);
 }
 
-TEST(SpotPopulationUnit, MovesComeInOrderOfTimeAndUpToTheGivenTime) {
+TEST(SpotsUnit, MovesComeInOrderOfTimeAndUpToTheGivenTime) {
   const auto space = space_above_orifice();
-  SpotPopulation population(scenes::paper_spots(), *space, 1.0);
+  Spots population(scenes::paper_spots(), *space, 1.0);
   double last = 0.0;
   for (const double until : {0.0, 0.1, 0.1, 0.35, 0.5})
-    while (const auto move = population.next_move(until, *space)) {
+    while (const auto move = population.next_step(until, *space)) {
       EXPECT_GE(move->time, last);
       EXPECT_LE(move->time, until);
       last = move->time;
@@ -77,24 +77,24 @@ TEST(SpotPopulationUnit, MovesComeInOrderOfTimeAndUpToTheGivenTime) {
   EXPECT_GT(last, 0.49);
 }
 
-TEST(SpotPopulationUnit, EachMoveStartsWhereTheSpotsLastEnded) {
+TEST(SpotsUnit, EachMoveStartsWhereTheSpotsLastEnded) {
   const auto space = space_above_orifice();
-  SpotPopulation population(scenes::paper_spots(), *space, 1.0);
+  Spots population(scenes::paper_spots(), *space, 1.0);
   std::map<std::int64_t, Vector3> at;
-  while (const auto move = population.next_move(1.0, *space)) {
+  while (const auto move = population.next_step(1.0, *space)) {
     if (at.count(move->spot)) {
       EXPECT_LT((at[move->spot] - start_of(*move)).norm(), 1e-12);
     }
     at[move->spot] = end_of(*move);
   }
-  ASSERT_GE(population.spots().size(), at.size());
-  for (const Spot& spot : population.spots())
+  ASSERT_GE(population.live().size(), at.size());
+  for (const Spot& spot : population.live())
     if (spot.steps > 0) {
       EXPECT_LT((spot.position - at.at(spot.id)).norm(), 1e-12);
     }
 }
 
-TEST(SpotPopulationUnit, StepsAreCounted) {
+TEST(SpotsUnit, StepsAreCounted) {
   const auto space = space_above_orifice();
   walk(scenes::paper_spots(), *space, 100, 20, [&](const Move& move, int n) {
     EXPECT_EQ(move.number, n);
@@ -103,15 +103,15 @@ TEST(SpotPopulationUnit, StepsAreCounted) {
 }
 
 /// All at the multiples of dz / v_s, each spot at all of them from the first after its birth on (2010).
-TEST(SpotPopulationUnit, SpotsStepTogether) {
+TEST(SpotsUnit, SpotsStepTogether) {
   const auto space = space_above_orifice();
   SpotParameters parameters = scenes::paper_spots();
   parameters.together = true;
   const double interval = parameters.mean_waiting_time();
-  SpotPopulation population(parameters, *space, 1.0);
+  Spots population(parameters, *space, 1.0);
   std::map<std::int64_t, std::int64_t> last;
   std::int64_t now = 0, stepped = 0, born = 0;
-  while (const auto move = population.next_move(3.0, *space)) {
+  while (const auto move = population.next_step(3.0, *space)) {
     const auto multiple = static_cast<std::int64_t>(std::nearbyint(move->time / interval));
     EXPECT_EQ(move->time, static_cast<double>(multiple) * interval);
     if (multiple != now) {
@@ -134,7 +134,7 @@ TEST(SpotPopulationUnit, SpotsStepTogether) {
 }
 
 /// Births and directions are the same as of spots that step by themselves.
-TEST(SpotPopulationInvariance, SteppingTogetherChangesOnlyTheTimes) {
+TEST(SpotsInvariance, SteppingTogetherChangesOnlyTheTimes) {
   const auto space = space_above_orifice();
   const auto middles = [&](bool together) {
     SpotParameters parameters = scenes::paper_spots();
@@ -148,7 +148,7 @@ TEST(SpotPopulationInvariance, SteppingTogetherChangesOnlyTheTimes) {
   EXPECT_EQ(middles(true), middles(false));
 }
 
-TEST(SpotPopulationStatistical, ChancesAreUniformAndDoNotDependOnTheDirection) {
+TEST(SpotsStatistical, ChancesAreUniformAndDoNotDependOnTheDirection) {
   const auto space = space_above_orifice();
   std::vector<int> counts(40);
   walk(scenes::paper_spots(), *space, 500, 80, [&](const Move& move, int) {
@@ -162,43 +162,43 @@ TEST(SpotPopulationStatistical, ChancesAreUniformAndDoNotDependOnTheDirection) {
   EXPECT_LT(scenes::deviation_from_equal_counts(counts), bound);
 }
 
-TEST(SpotPopulationUnit, RemovedSpotsStepNoMore) {
+TEST(SpotsUnit, RemovedSpotsStepNoMore) {
   const auto space = space_above_orifice();
-  SpotPopulation population(scenes::paper_spots(), *space, 1.0);
+  Spots population(scenes::paper_spots(), *space, 1.0);
   std::set<std::int64_t> removed;
-  while (const auto move = population.next_move(1.0, *space)) {
+  while (const auto move = population.next_step(1.0, *space)) {
     EXPECT_EQ(removed.count(move->spot), 0u);
     if (move->spot % 3 != 0) continue;
-    population.remove_last_moved();
+    population.remove(move->spot);
     removed.insert(move->spot);
   }
   EXPECT_GT(removed.size(), 50u);
-  EXPECT_EQ(population.spots().size() + removed.size(), static_cast<std::size_t>(population.born()));
+  EXPECT_EQ(population.live().size() + removed.size(), static_cast<std::size_t>(population.born()));
 }
 
-TEST(SpotPopulationUnit, RefusesBadParametersAndNarrowOrifices) {
+TEST(SpotsUnit, RefusesBadParametersAndNarrowOrifices) {
   const auto space = space_above_orifice();
-  EXPECT_THROW(SpotPopulation(SpotParameters(), *space, 1.0), spot::InvalidParameter);
+  EXPECT_THROW(Spots(SpotParameters(), *space, 1.0), spot::InvalidParameter);
   SpotParameters wide = scenes::paper_spots();
   wide.radius = 4.1;
-  EXPECT_THROW(SpotPopulation(wide, *space, 1.0), spot::InvalidContainer);
+  EXPECT_THROW(Spots(wide, *space, 1.0), spot::InvalidContainer);
 }
 
 /// Id, birth and walk of a spot depend on the seed and its id alone: neither on what time is asked for nor on the
 /// fate of other spots.
-TEST(SpotPopulationInvariance, WalksDependOnSeedAndIdAlone) {
+TEST(SpotsInvariance, WalksDependOnSeedAndIdAlone) {
   const auto space = space_above_orifice();
   const auto record = [&](std::uint64_t seed, double piece, bool remove_odd) {
     SpotParameters parameters = scenes::paper_spots();
     parameters.seed = seed;
-    SpotPopulation population(parameters, *space, 1.0);
+    Spots population(parameters, *space, 1.0);
     std::map<std::int64_t, std::vector<double>> walks;
     for (double until = piece; until <= 1.0; until += piece)
-      while (const auto move = population.next_move(until, *space)) {
+      while (const auto move = population.next_step(until, *space)) {
         if (move->spot % 2 == 0)
           walks[move->spot].insert(walks[move->spot].end(), {move->time, move->middle.x(), move->middle.y()});
         else if (remove_odd)
-          population.remove_last_moved();
+          population.remove(move->spot);
       }
     return walks;
   };
@@ -209,7 +209,65 @@ TEST(SpotPopulationInvariance, WalksDependOnSeedAndIdAlone) {
   EXPECT_NE(record(2, 1.0, false), walks) << "another seed";
 }
 
-TEST(SpotPopulationAnalytic, SpotsAreBornBelowTheOrificeInsideItsDisc) {
+using Walks = std::map<std::int64_t, std::vector<double>>;
+
+void record(Walks& walks, const Move& move) {
+  walks[move.spot].insert(walks[move.spot].end(), {move.time, move.middle.x(), move.middle.y(), move.middle.z()});
+}
+
+/// Every third spot goes after its tenth step; one in seven after its first.
+bool is_last(const Move& move) {
+  return (move.spot % 3 == 0 && move.number == 10) || (move.spot % 7 == 0 && move.number == 1);
+}
+
+/// Windows of several ranks, saved and read again by others between any two of them, against one step after the other.
+TEST(SpotsInvariance, WindowsOfRanksAreThoseInTheOrderOfTime) {
+  const auto space = space_above_orifice();
+  const SpotParameters parameters = scenes::paper_spots();
+  const double window = 1.0 / 64.0;
+  Walks expected;
+  Spots in_order(parameters, *space, 1.0);
+  while (const auto move = in_order.next_step(1.0, *space)) {
+    record(expected, *move);
+    if (is_last(*move)) in_order.remove(move->spot);
+  }
+  for (const std::int64_t ranks : {1, 3}) {
+    Walks walks;
+    std::vector<spot::Bytes> saved;
+    for (int k = 1; k <= 64; ++k) {
+      std::vector<spot::Bytes> next;
+      for (std::int64_t rank = 0; rank < ranks; ++rank) {
+        const auto here = [&](const Spot& spot) { return (spot.id + k) % ranks == rank; };
+        Spots spots(parameters, *space, 1.0);
+        for (const spot::Bytes& bytes : saved) {
+          spot::ByteReader reader(bytes);
+          spots.restore(reader);
+        }
+        spots.take_out_others(here);
+        spots.give_birth(k * window, *space, here);
+        std::set<std::int64_t> gone;
+        spots.step_until(k * window, *space, [&](const Spot&, const std::vector<Move>& moves) {
+          for (const Move& move : moves) {
+            // A window's steps are made before it is known which was the last.
+            if (gone.count(move.spot) == 0) record(walks, move);
+            if (is_last(move)) gone.insert(move.spot);
+          }
+        });
+        for (const std::int64_t spot : gone) {
+          spots.remove(spot);
+          spots.remove(spot);
+        }
+        for (const Spot& spot : spots.live()) EXPECT_EQ(gone.count(spot.id), 0u);
+        next.emplace_back();
+        spots.save(next.back());
+      }
+      saved = next;
+    }
+    EXPECT_EQ(walks, expected) << ranks;
+  }
+}
+
+TEST(SpotsAnalytic, SpotsAreBornBelowTheOrificeInsideItsDisc) {
   const auto space = space_above_orifice();
   walk(scenes::paper_spots(), *space, 2000, 1, [&](const Move& move, int) {
     const Vector3 birth = start_of(move) - orifice.centre;
@@ -218,13 +276,13 @@ TEST(SpotPopulationAnalytic, SpotsAreBornBelowTheOrificeInsideItsDisc) {
   });
 }
 
-TEST(SpotPopulationAnalytic, AnOrificeAsWideAsTheSpotsBearsThemOnItsAxis) {
+TEST(SpotsAnalytic, AnOrificeAsWideAsTheSpotsBearsThemOnItsAxis) {
   const spot::WalledContainer space(Orifice{{0.0, 0.0, 0.0}, 2.6});
   walk(scenes::paper_spots(), space, 100, 1,
        [&](const Move& move, int) { EXPECT_NEAR(start_of(move).head<2>().norm(), 0.0, 1e-12); });
 }
 
-TEST(SpotPopulationStatistical, BirthsAreUniformOnTheDisc) {
+TEST(SpotsStatistical, BirthsAreUniformOnTheDisc) {
   const auto space = space_above_orifice();
   std::vector<int> rings(20), sectors(20);
   walk(scenes::paper_spots(), *space, 20000, 1, [&](const Move& move, int) {
@@ -238,16 +296,16 @@ TEST(SpotPopulationStatistical, BirthsAreUniformOnTheDisc) {
   EXPECT_LT(scenes::deviation_from_equal_counts(sectors), bound);
 }
 
-TEST(SpotPopulationStatistical, BirthsAreAPoissonProcess) {
+TEST(SpotsStatistical, BirthsAreAPoissonProcess) {
   const auto space = space_above_orifice();
   const SpotParameters parameters = scenes::paper_spots();
-  SpotPopulation population(parameters, *space, 1.0);
+  Spots population(parameters, *space, 1.0);
   const int intervals = 4000;
   const double length = 10.0 / parameters.injection_rate;  // ten births expected in each
   double sum = 0.0, sum_of_squares = 0.0;
   std::int64_t before = 0;
   for (int k = 1; k <= intervals; ++k) {
-    while (population.next_move(k * length, *space)) population.remove_last_moved();
+    while (const auto move = population.next_step(k * length, *space)) population.remove(move->spot);
     const double births = static_cast<double>(population.born() - before);
     before = population.born();
     sum += births;
@@ -260,7 +318,7 @@ TEST(SpotPopulationStatistical, BirthsAreAPoissonProcess) {
   EXPECT_LT(std::abs(scenes::chi_square_deviation(dispersion, intervals - 1)), bound);
 }
 
-TEST(SpotPopulationStatistical, WaitingTimesAreExponentialAndGiveTheDriftSpeed) {
+TEST(SpotsStatistical, WaitingTimesAreExponentialAndGiveTheDriftSpeed) {
   const auto space = space_above_orifice();
   const SpotParameters parameters = scenes::paper_spots();
   std::map<std::int64_t, double> last;
@@ -284,7 +342,7 @@ TEST(SpotPopulationStatistical, WaitingTimesAreExponentialAndGiveTheDriftSpeed) 
 }
 
 /// The four directions are equally frequent and successive ones independent: Var(x) = 2 b z along both axes.
-TEST(SpotPopulationStatistical, FreeSpotsDiffuse) {
+TEST(SpotsStatistical, FreeSpotsDiffuse) {
   const auto space = space_above_orifice();
   const SpotParameters parameters = scenes::paper_spots();
   const int number = 4000, steps = 64;
@@ -310,7 +368,7 @@ TEST(SpotPopulationStatistical, FreeSpotsDiffuse) {
 
 /// Successive steps go the same way with the chance p, or else any way: Var(x) grows to (1 + p) / (1 - p) of a free
 /// walk's.
-TEST(SpotPopulationStatistical, PersistentSpotsDiffuse) {
+TEST(SpotsStatistical, PersistentSpotsDiffuse) {
   const auto space = space_above_orifice();
   SpotParameters parameters = scenes::paper_spots();
   const double p = parameters.persistence = 0.7;
@@ -333,7 +391,7 @@ TEST(SpotPopulationStatistical, PersistentSpotsDiffuse) {
 
 /// In a shaft that they fill evenly, all but the lowest spots take c of the volume where F spots a time and area climb
 /// at v_s (c / c_0)^2: c^3 = F V_s c_0^2 / v_s. Without dilation it is F V_s / v_s.
-TEST(SpotPopulationStatistical, DilatedPackingsCarrySpotsFaster) {
+TEST(SpotsStatistical, DilatedPackingsCarrySpotsFaster) {
   const double half = 5.0, low = 20.0, high = 40.0;
   const auto shaft =
       spot::box_silo(-half, half, -half, half, Orifice{{0.0, 0.0, 0.0}, 4.0}, spot::SpotBuffers{0.0, 0.0});
@@ -343,13 +401,13 @@ TEST(SpotPopulationStatistical, DilatedPackingsCarrySpotsFaster) {
   parameters.fixed_volume = 40.0;
   for (const double c_0 : {0.0, 0.03, 0.06}) {
     parameters.dilation = c_0;
-    SpotPopulation population(parameters, *shaft, 1.0);
+    Spots population(parameters, *shaft, 1.0);
     double sum = 0.0, looks = 0.0;
     for (double time = 1.0; time <= 60.0; time += 1.0) {
-      while (const auto move = population.next_move(time, *shaft))
-        if (end_of(*move).z() > 60.0) population.remove_last_moved();
+      while (const auto move = population.next_step(time, *shaft))
+        if (end_of(*move).z() > 60.0) population.remove(move->spot);
       if (time < 40.0) continue;
-      for (const Spot& spot : population.spots()) sum += spot.position.z() >= low && spot.position.z() < high;
+      for (const Spot& spot : population.live()) sum += spot.position.z() >= low && spot.position.z() < high;
       ++looks;
     }
     const double volume = parameters.missing_volume(1.0), area = 4.0 * half * half;
@@ -401,7 +459,7 @@ TEST_P(SpotsBetweenWallsStatistical, StayUniform) {
 
 INSTANTIATE_TEST_SUITE_P(Persistence, SpotsBetweenWallsStatistical, testing::Values(0.0, 0.8));
 
-TEST(SpotPopulationAnalytic, RisingSpotsKeepTheirRadiusFromBaseAndRim) {
+TEST(SpotsAnalytic, RisingSpotsKeepTheirRadiusFromBaseAndRim) {
   const auto silo = scenes::small_silo(8.0, 4.0);
   const spot::BasePlate plate(silo->orifice());
   walk(scenes::paper_spots(), *silo, 500, 80, [&](const Move& move, int) {
