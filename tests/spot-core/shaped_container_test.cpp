@@ -99,7 +99,7 @@ TEST(ShapedContainerAnalytic, HopperHasAConeAnEdgeAndACylinder) {
   EXPECT_NEAR(wall.distance, 0.3, 1e-12);
   EXPECT_LT((wall.normal - Vector3(0.0, 1.0, 0.0)).norm(), 1e-12);
   const WallContact rim = only({3.7, 0.0, 0.05});
-  EXPECT_NEAR(rim.distance, std::min(std::hypot(0.3, 0.05), (0.3 + 0.05 * slope) * cosine), 1e-9);
+  EXPECT_NEAR(rim.distance, std::hypot(0.3, 0.05), 1e-12) << "the cone would be nearest below the rim";
   silo.contacts({0.0, 0.0, 0.3}, 0.7, contacts);
   EXPECT_EQ(contacts.begin(), contacts.end()) << "over the orifice";
 }
@@ -137,7 +137,7 @@ std::vector<spot::Grain> grains_in(const ShapedContainer& silo, double height) {
   return grains;
 }
 
-constexpr double window = 0.1, end = 8.0;
+constexpr double window = 0.1, end = 4.0;
 
 /// Every invariant after every window; some grains drain, and all that are left are off the walls.
 void drain(spot::Drainage& drainage, const ShapedContainer& silo, const spot::DrainageLimits& limits) {
@@ -147,7 +147,7 @@ void drain(spot::Drainage& drainage, const ShapedContainer& silo, const spot::Dr
     ASSERT_EQ(ledger.check(drainage), "") << "window " << k;
     ASSERT_LT(ledger.overlaps().largest, limits.largest_overlap_in_flow);
   }
-  EXPECT_GT(ledger.drained(), 150u);
+  EXPECT_GT(ledger.drained(), 50u);
   int in_wall = 0;
   for (const spot::Grain& grain : drainage.grains()) {
     if (grain.position.z() < 0.0) continue;

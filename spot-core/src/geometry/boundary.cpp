@@ -16,12 +16,13 @@ namespace {
 
 constexpr std::size_t most_surfaces = 64;
 
-bool same(const Surface& a, const Surface& b, double size, double tolerance) {
-  if (typeid(a) != typeid(b)) return false;
+/// The largest difference between the numbers of two surfaces (length).
+double difference(const Surface& a, const Surface& b, double size) {
+  if (typeid(a) != typeid(b)) return size;
   const auto of_a = a.numbers(size), of_b = b.numbers(size);
-  for (std::size_t k = 0; k < of_a.size(); ++k)
-    if (!(std::abs(of_a[k] - of_b[k]) < tolerance)) return false;
-  return true;
+  double largest = 0.0;
+  for (std::size_t k = 0; k < of_a.size(); ++k) largest = std::max(largest, std::abs(of_a[k] - of_b[k]));
+  return largest;
 }
 
 /// Directions in a plane, given by two that are across each other.
@@ -53,8 +54,14 @@ Boundary::Node Boundary::node_of(const Solid& solid) {
 }
 
 std::size_t Boundary::number_of(const std::shared_ptr<const Surface>& surface) {
-  for (std::size_t k = 0; k < surfaces_.size(); ++k)
-    if (same(*surfaces_[k], *surface, 1e9 * tolerance_, tolerance_)) return k;
+  const double clear = 1e5 * tolerance_;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    const double apart = difference(*surfaces_[k], *surface, 1e9 * tolerance_);
+    if (apart < tolerance_) return k;
+    if (apart < clear)
+      throw InvalidContainer(message("two surfaces of a container are ", apart, " apart: make them the same, to ",
+                                     tolerance_, ", or differ by at least ", clear));
+  }
   if (surfaces_.size() == most_surfaces)
     throw InvalidContainer(message("a container has more than ", most_surfaces, " different surfaces"));
   surfaces_.push_back(surface);

@@ -32,10 +32,10 @@ class Cylinder : public Surface {
     return {at.x(), at.y(), at.z(), size * axis_.x(), size * axis_.y(), size * axis_.z(), radius_};
   }
 
-  bool has_lines_along(const Vector3& direction) const override { return axis_.cross(direction).norm() < 1e-12; }
+  double slant(const Vector3& direction) const override { return axis_.cross(direction).norm(); }
 
   bool revolves_about(const Line& axis, double tolerance) const override {
-    return has_lines_along(axis.direction) && out(axis.origin - point_).norm() < tolerance;
+    return slant(axis.direction) < 1e-12 && out(axis.origin - point_).norm() < tolerance;
   }
 
   std::optional<Line> axis() const override { return Line{point_, axis_}; }
@@ -60,7 +60,8 @@ Solid cylinder(const Vector3& point, const Vector3& axis, double radius) {
 }
 
 Solid cylinder_between(const Vector3& from, const Vector3& to, double radius) {
-  return cylinder(from, to - from, radius) & half_space(from, to - from) & half_space(to, from - to);
+  const Solid endless = cylinder(from, to - from, radius);
+  return endless & half_space(from, to - from) & half_space(to, from - to);
 }
 
 }  // namespace spot

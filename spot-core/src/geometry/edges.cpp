@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/directions.hpp"
 #include "geometry/plane.hpp"
@@ -12,6 +13,8 @@
 namespace spot {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Curves = std::vector<std::unique_ptr<Curve>>;
 
@@ -145,10 +148,18 @@ Curves edges_over_generators(const Surface& ruled, const Surface& other, double 
   return curves;
 }
 
-/// Is it made of lines through this point?
-bool is_swept_from(const Surface& surface, const Vector3& point, double tolerance) {
-  if (surface.apex()) return (*surface.apex() - point).norm() < tolerance;
-  return dynamic_cast<const Plane*>(&surface) != nullptr && std::abs(surface.depth(point)) < tolerance;
+/// How far a surface that may be swept from a point by lines misses that: 0 if it is.
+double miss(const Surface& surface, const Vector3& point) {
+  if (surface.apex()) return (*surface.apex() - point).norm();
+  return dynamic_cast<const Plane*>(&surface) != nullptr ? std::abs(surface.depth(point)) : infinity;
+}
+
+/// Almost parallel surfaces meet along curves that no even spacing of generators finds.
+bool is_exact(double difference, double tolerance, double clear, const char* what) {
+  if (difference < tolerance) return true;
+  if (difference < clear)
+    throw InvalidContainer(message(what, ", but for ", difference, ": make it exact, or differ by ", clear));
+  return false;
 }
 
 }  // namespace
@@ -167,8 +178,10 @@ std::vector<std::unique_ptr<Curve>> edges_between(const Surface& a, const Surfac
     return edges_between(b, a, tolerance);
   }
   if (b.revolves_about(*a.axis(), tolerance)) return edges_about_axis(a, b);
-  if (!a.apex() && b.has_lines_along(a.axis()->direction)) return common_generators(a, b, 0.0, tolerance);
-  if (a.apex() && is_swept_from(b, *a.apex(), tolerance)) return common_generators(a, b, 1e9 * tolerance, tolerance);
+  if (!a.apex() && is_exact(b.slant(a.axis()->direction), 1e-12, 1e-3, "the axis of a cylinder is along a surface"))
+    return common_generators(a, b, 0.0, tolerance);
+  if (a.apex() && is_exact(miss(b, *a.apex()), tolerance, 1e6 * tolerance, "the point of a cone is on a surface"))
+    return common_generators(a, b, 1e9 * tolerance, tolerance);
   return edges_over_generators(a, b, tolerance);
 }
 

@@ -6,15 +6,7 @@
 
 namespace spot {
 
-namespace {
-
-constexpr double parallel = 1e-12;
-
-}  // namespace
-
-bool Plane::has_lines_along(const Vector3& direction) const { return std::abs(normal_.dot(direction)) < parallel; }
-
-bool Plane::revolves_about(const Line& axis, double) const { return normal_.cross(axis.direction).norm() < parallel; }
+bool Plane::revolves_about(const Line& axis, double) const { return normal_.cross(axis.direction).norm() < 1e-12; }
 
 Solid half_space(const Vector3& point, const Vector3& normal) {
   require_finite(point, "the point of a plane");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <cmath>
+
 #include "spot/geometry/surface.hpp"
 
 namespace spot {
@@ -18,7 +20,7 @@ class Plane : public Surface {
   std::array<double, 7> numbers(double size) const override {
     return {size * normal_.x(), size * normal_.y(), size * normal_.z(), offset_};
   }
-  bool has_lines_along(const Vector3& direction) const override;
+  double slant(const Vector3& direction) const override { return std::abs(normal_.dot(direction)); }
   bool revolves_about(const Line& axis, double tolerance) const override;
 
   double offset() const { return offset_; }

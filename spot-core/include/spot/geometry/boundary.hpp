@@ -23,7 +23,8 @@ class Curve;
 class Boundary {
  public:
   /// `size` is a length that no radius and no thickness is much below. Surfaces closer than 1e-9 of it are the same, so
-  /// that shapes that touch have no gap between them. Throws InvalidContainer if a solid has more than 64 surfaces.
+  /// that shapes that touch have no gap between them. Throws InvalidContainer if two are closer than 1e-4 of it but not
+  /// the same, if there are more than 64 different ones, and where edges cannot be found (edges.hpp).
   Boundary(const Solid& solid, double size);
   ~Boundary();
   Boundary(Boundary&&) noexcept;

@@ -46,8 +46,9 @@ class Surface {
   /// same are the same surface.
   virtual std::array<double, 7> numbers(double size) const = 0;
 
-  /// Lies every line with this direction through a point of it in it?
-  virtual bool has_lines_along(const Vector3&) const { return false; }
+  /// The sine of the angle at which lines with this unit direction leave it, if it is the same for all of its points or
+  /// if some stay in it: 0 where they do. 1 for surfaces without such lines.
+  virtual double slant(const Vector3&) const { return 1.0; }
 
   /// Is it the same after any turn about this axis? Within `tolerance`.
   virtual bool revolves_about(const Line& axis, double tolerance) const = 0;
