@@ -60,6 +60,8 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
   relaxation_parameters_.validate();
   require_steps(parameters_, diameter);
   container_->require_entrance(spots.equivalent_radius());
+  container_->periodic().require_length(2.0 * (spots.radius + 2.0 * diameter),
+                                        "twice the spot radius and two diameters, so that no spot meets itself");
   const double base = container_->orifice().centre.z();
   // A newborn spot is 2 R_s tall, and the middle of its first step is half a step higher.
   const double lowest_reached = base - 2.0 * spots.radius + 0.5 * spots.step_height;
@@ -99,8 +101,8 @@ MovesReceived Drainage::take_moves_received() {
 void Drainage::require_inside(const Grain& grain, double lowest, double reach) const {
   const Orifice& orifice = container_->orifice();
   const Vector3& centre = grain.position;
-  const bool falling =
-      centre.z() < orifice.centre.z() && centre.z() >= lowest && (centre - orifice.centre).head<2>().norm() <= reach;
+  const bool falling = centre.z() < orifice.centre.z() && centre.z() >= lowest &&
+                       container_->periodic().nearest(Vector3(centre - orifice.centre)).head<2>().norm() <= reach;
   if (!falling && !container_->contains(centre))
     throw InvalidPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
                                  ") is outside the container"));
@@ -157,12 +159,13 @@ void Drainage::require_left_through_orifice(std::size_t first) const {
 /// How deep a grain overlaps a wall, in diameters, or 0. Held grains may be part of the walls, and there are none below
 /// the orifice.
 double Drainage::depth_in_walls(const Grain& grain) const {
-  const double reach = 0.5 * diameter_;
+  const double radius = radius_in(diameter_, grain);
   if (grain.held || grain.position.z() < container_->orifice().centre.z()) return 0.0;
   WallContacts contacts;
-  container_->contacts(grain.position, reach, contacts);
+  container_->contacts(grain.position, radius, contacts);
   double deepest = 0.0;
-  for (const WallContact& contact : contacts) deepest = std::max(deepest, 0.5 - contact.distance / diameter_);
+  for (const WallContact& contact : contacts)
+    deepest = std::max(deepest, radius / diameter_ - contact.distance / diameter_);
   return deepest;
 }
 

@@ -37,7 +37,8 @@ double share_at(const SpotParameters& spots, double squared) {
   return 1.0 - squared / (spots.radius * spots.radius);
 }
 
-int parts_of(double share) { return static_cast<int>(share * whole_share); }
+/// Of a grain with this volume_parts().
+int parts_of(double share, int volume) { return static_cast<int>(share * volume); }
 
 }  // namespace
 
@@ -46,7 +47,7 @@ int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& gr
   int shares = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
-    if (squared <= spots.radius * spots.radius) shares += parts_of(share_at(spots, squared));
+    if (squared <= spots.radius * spots.radius) shares += parts_of(share_at(spots, squared), packing.volume(i));
   }
   return shares;
 }
@@ -63,7 +64,7 @@ int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const M
     const Vector3 by = share * whole;
     packing.move(i, quantum.round(by.x()), quantum.round(by.y()), quantum.round(by.z()));
     if (received) ++(*received)[packing.id(i)];
-    shares += parts_of(share);
+    shares += parts_of(share, packing.volume(i));
   }
   return shares;
 }

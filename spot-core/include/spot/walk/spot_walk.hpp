@@ -39,7 +39,8 @@ class SpotWalk {
   /// From `time` on, the spot goes at this pace: what is left of its waiting time gets shorter or longer.
   void set_pace(Spot& spot, double time, double pace) const;
 
-  /// Carries out the next step of a spot and draws the time of the one after.
+  /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
+  /// cell then; the middle of the step need not be.
   Move step(Spot& spot, const Container& container) const;
 
  private:
