@@ -26,8 +26,8 @@ GrainChecks::GrainChecks(const DrainageLimits& limits, std::shared_ptr<const Con
 void GrainChecks::require_inside(const Grain& grain, double lowest, double reach) const {
   const Orifice& orifice = container_->orifice();
   const Vector3& centre = grain.position;
-  const bool falling =
-      centre.z() < orifice.centre.z() && centre.z() >= lowest && (centre - orifice.centre).head<2>().norm() <= reach;
+  const bool falling = centre.z() < orifice.centre.z() && centre.z() >= lowest &&
+                       container_->periodic().nearest(Vector3(centre - orifice.centre)).head<2>().norm() <= reach;
   if (!falling && !container_->contains(centre))
     throw InvalidPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
                                  ") is outside the container"));
@@ -44,12 +44,13 @@ void GrainChecks::require_valid_place(const Grain& grain) const {
 }
 
 double GrainChecks::depth_in_walls(const Grain& grain) const {
-  const double reach = 0.5 * diameter_;
+  const double radius = radius_in(diameter_, grain);
   if (grain.held || grain.position.z() < container_->orifice().centre.z()) return 0.0;
   WallContacts contacts;
-  container_->contacts(grain.position, reach, contacts);
+  container_->contacts(grain.position, radius, contacts);
   double deepest = 0.0;
-  for (const WallContact& contact : contacts) deepest = std::max(deepest, 0.5 - contact.distance / diameter_);
+  for (const WallContact& contact : contacts)
+    deepest = std::max(deepest, radius / diameter_ - contact.distance / diameter_);
   return deepest;
 }
 

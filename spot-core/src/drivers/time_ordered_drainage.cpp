@@ -20,6 +20,16 @@ std::vector<Grain> take_grains(ByteReader& saved) {
   return grains;
 }
 
+/// Do grains come down by themselves? Whoever lets them, TiledPacking, knows equal grains and space that does not
+/// repeat.
+bool may_settle(const Packing& packing, const std::vector<Grain>& come = {}) {
+  const double radius = 0.5 * packing.diameter();
+  const auto equal = [&](const Grain& grain) { return radius_in(packing.diameter(), grain) == radius; };
+  const std::vector<Grain> grains = packing.grains();
+  return !packing.periodic().any() && std::all_of(grains.begin(), grains.end(), equal) &&
+         std::all_of(come.begin(), come.end(), equal);
+}
+
 }  // namespace
 
 TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
@@ -29,7 +39,9 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
       packing_(std::move(packing)),
       spots_(spots, Drainage::container(), packing_.diameter()),
       relaxation_(relaxation) {
+  require_same_periods();
   require_valid_start();
+  if (!may_settle(packing_)) return;
   TiledPacking tiled(packing_.diameter(), packing_.extent(), limits.outlet, packing_.grains(), Drainage::container());
   let_settle(tiled, true);
 }
@@ -43,12 +55,17 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
                                          const DrainageLimits& limits, std::shared_ptr<const Container> container,
                                          double diameter, double extent, ByteReader saved)
     : Drainage(spots, relaxation, limits, std::move(container), diameter),
-      packing_(diameter, extent, take_grains(saved)),
+      packing_(diameter, extent, take_grains(saved), Drainage::container().periodic()),
       spots_(spots, Drainage::container(), diameter),
       relaxation_(relaxation) {
   spots_.restore(saved);
   set_counters(saved.take<Counters>());
   relaxed_everywhere_ = saved.take<std::int64_t>();
+}
+
+void TimeOrderedDrainage::require_same_periods() const {
+  if (packing_.periodic() != container().periodic().on(packing_.quantum()))
+    throw InvalidContainer("space repeats otherwise in the container than in the packing");
 }
 
 /// Lists need not be saved: no bit depends on them.
@@ -137,6 +154,8 @@ void TimeOrderedDrainage::take_out_drained() {
 }
 
 Overlap TimeOrderedDrainage::carry_out(const GrainChanges& changes) {
+  if (!may_settle(packing_, changes.come))
+    throw InvalidPacking("grains cannot come or go yet where they have unequal radii or space repeats");
   TiledPacking tiled(packing_.diameter(), packing_.extent(), limits().outlet, packing_.grains(), container());
   const Overlap largest = tiled.change(changes.gone, changes.come, container());
   const std::set<std::int64_t> gone(changes.gone.begin(), changes.gone.end());
@@ -167,6 +186,7 @@ void TimeOrderedDrainage::let_settle(TiledPacking& tiled, bool everybody) {
 }
 
 void TimeOrderedDrainage::take_new_container() {
+  require_same_periods();
   packing_.mark_near_walls(container());
   spots_.replace_container(container());
 }

@@ -20,7 +20,8 @@ double fixed_volume_weight(const SpotParameters& parameters, double height, int 
 
 namespace {
 
-int parts_of(double share) { return static_cast<int>(share * whole_share); }
+/// Of a grain with this volume_parts().
+int parts_of(double share, int volume) { return static_cast<int>(share * volume); }
 
 }  // namespace
 
@@ -29,7 +30,8 @@ int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& gr
   int shares = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
-    if (squared <= spots.radius * spots.radius) shares += parts_of(spots.profile->share(squared, spots.radius));
+    if (squared <= spots.radius * spots.radius) 
+      shares += parts_of(spots.profile->share(squared, spots.radius), packing.volume(i));
   }
   return shares;
 }
@@ -46,7 +48,7 @@ int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const M
     const Vector3 by = share * whole;
     packing.move(i, quantum.round(by.x()), quantum.round(by.y()), quantum.round(by.z()));
     if (received) ++(*received)[packing.id(i)];
-    shares += parts_of(share);
+    shares += parts_of(share, packing.volume(i));
   }
   return shares;
 }

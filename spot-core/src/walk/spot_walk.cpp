@@ -91,6 +91,7 @@ Move SpotWalk::step(Spot& spot, const Container& container) const {
   if (spot.position != target) spot.direction = opposite(spot.direction);
   move.middle = 0.5 * (start + spot.position);
   move.step = spot.position - start;
+  spot.position = container.periodic().wrap(spot.position);
   move.number = ++spot.steps;
   move.chance = spot.chance;
   draw_next_step(spot);

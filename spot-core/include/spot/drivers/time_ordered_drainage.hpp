@@ -41,6 +41,7 @@ class TimeOrderedDrainage : public Drainage {
  private:
   TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
                       std::shared_ptr<const Container> container, double diameter, double extent, ByteReader saved);
+  void require_same_periods() const;
   Overlap carry_out(const GrainChanges& changes) override;
   void take_new_container() override;
   void let_settle(TiledPacking& packing, bool everybody);

@@ -23,7 +23,8 @@ double fixed_volume_weight(const SpotParameters& parameters, double height, int 
 /// No weight is larger.
 double largest_weight(const SpotParameters& parameters);
 
-/// The shares that the given grains have in a move, together.
+/// The shares that the given grains have in a move, together, each times the grain's volume_parts(): 1024ths of a grain
+/// of the packing's diameter.
 int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
                     const SpotParameters& spots);
 

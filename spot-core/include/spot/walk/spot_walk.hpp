@@ -39,7 +39,8 @@ class SpotWalk {
   /// From `time` on, the spot goes at this speed over v_s: what is left of its waiting time gets shorter or longer.
   void set_relative_speed(Spot& spot, double time, double relative_speed) const;
 
-  /// Carries out the next step of a spot and draws the time of the one after.
+  /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
+  /// cell then; the middle of the step need not be.
   Move step(Spot& spot, const Container& container) const;
 
  private:
