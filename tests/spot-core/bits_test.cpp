@@ -55,7 +55,7 @@ Bytes bytes_of(const std::map<std::int64_t, Spot>& spots) {
     spot::append(bytes, id);
     spot::append(bytes, spot.steps);
     spot::append(bytes, spot.position);
-    for (const double number : {spot.next_step, spot.turn, spot.chance, spot.pace}) spot::append(bytes, number);
+    for (const double number : {spot.next_step, spot.direction, spot.chance, spot.relative_speed}) spot::append(bytes, number);
   }
   return bytes;
 }

@@ -196,7 +196,7 @@ void Boundary::visit_contacts(const Vector3& place, double reach, Visit&& visit)
       return (other.point - candidate.point).norm() < apart;
     });
     if (known || !is_minimum(place, candidate)) continue;
-    if (inside && !in_sight(place, candidate)) continue;
+    if (inside && !taken.empty() && !in_sight(place, candidate)) continue;  // nothing is before the nearest
     visit(contact(place, candidate.point, inside));
     if (!inside) return;
     taken.push_back(candidate);

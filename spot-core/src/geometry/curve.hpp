@@ -47,7 +47,6 @@ class SampledCurve : public Curve {
 
  private:
   virtual Vector3 at(double parameter) const = 0;
-  double lowest(const std::function<double(double)>& function, double low, double high) const;
 
   std::vector<Vector3> samples_;
   std::vector<double> gaps_;  ///< the longer of the distances to the samples before and after

@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <string>
 
 #include "spot/base/errors.hpp"
 #include "spot/base/vector.hpp"
