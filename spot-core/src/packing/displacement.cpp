@@ -11,34 +11,35 @@ double largest_weight(const SpotParameters& parameters) {
   return std::max(1.0, parameters.fixed_volume / calibration::least_enclosed);
 }
 
-double fixed_volume_weight(const SpotParameters& parameters, double height, int shares) {
+double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed) {
   if (parameters.fixed_volume == 0.0) return 1.0;
   const double part = parameters.profile->part_above(height / parameters.radius);
-  const double grains = static_cast<double>(shares) / whole_share;
+  const double grains = static_cast<double>(enclosed) / grain_volume;
   return parameters.fixed_volume * part / std::max(grains, calibration::least_enclosed * part + 1e-9);
 }
 
 namespace {
 
-int parts_of(double share) { return static_cast<int>(share * whole_share); }
+/// Of a grain with this share of the influence.
+int volume_of(double share) { return static_cast<int>(share * grain_volume); }
 
 }  // namespace
 
-int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
+int enclosed_volume(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
                     const SpotParameters& spots) {
-  int shares = 0;
+  int enclosed = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
-    if (squared <= spots.radius * spots.radius) shares += parts_of(spots.profile->share(squared, spots.radius));
+    if (squared <= spots.radius * spots.radius) enclosed += volume_of(spots.profile->share(squared, spots.radius));
   }
-  return shares;
+  return enclosed;
 }
 
 int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move, const SpotParameters& spots,
              MovesReceived* received) {
   const Quantum& quantum = packing.quantum();
   const Vector3 whole = -spots.influence * move.weight * move.step;
-  int shares = 0;
+  int enclosed = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
     if (squared > spots.radius * spots.radius) continue;
@@ -46,9 +47,9 @@ int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const M
     const Vector3 by = share * whole;
     packing.move(i, quantum.round(by.x()), quantum.round(by.y()), quantum.round(by.z()));
     if (received) ++(*received)[packing.id(i)];
-    shares += parts_of(share);
+    enclosed += volume_of(share);
   }
-  return shares;
+  return enclosed;
 }
 
 }  // namespace spot
