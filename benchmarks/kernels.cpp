@@ -170,12 +170,12 @@ void displace(benchmark::State& state, const Kernels& kernels) {
 }
 
 /// The shares in a move.
-void enclosed_shares(benchmark::State& state, const Kernels& kernels) {
+void enclosed_volume(benchmark::State& state, const Kernels& kernels) {
   const auto radius_squared = static_cast<float>(radius * radius * quanta * quanta);
   per_sphere(state, radius, [&](std::uint32_t first, std::uint32_t n, const Point& centre, std::size_t) {
-    return static_cast<std::size_t>(kernels.enclosed_shares(tiles().points.data() + first, n, centre,
+    return static_cast<std::size_t>(kernels.enclosed_volume(tiles().points.data() + first, n, centre,
                                                             {radius_squared, 1.0f / radius_squared})) /
-           spot::whole_share;
+           spot::grain_volume;
   });
 }
 
@@ -245,9 +245,9 @@ void moves_of_a_window(benchmark::State& state) {
   spot::SpotParameters spots{radius, influence};
   spots.profile = spot::InfluenceProfile::parabolic;
   std::vector<std::vector<spot::Move>> windows(16);
-  std::size_t shares_moved = 0;
-  const auto weigh = [&shares_moved](const std::vector<int>& shares, std::vector<spot::Move>&) {
-    for (const int share : shares) shares_moved += static_cast<std::size_t>(share);
+  std::size_t volume_moved = 0;
+  const auto weigh = [&volume_moved](const std::vector<int>& shares, std::vector<spot::Move>&) {
+    for (const int share : shares) volume_moved += static_cast<std::size_t>(share);
   };
   const auto places = middles(n * windows.size() / 2);
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -266,7 +266,7 @@ void moves_of_a_window(benchmark::State& state) {
   }
   const auto moves = static_cast<double>(state.iterations()) * static_cast<double>(n);
   state.SetItemsProcessed(static_cast<std::int64_t>(moves));
-  state.counters["grains_per_move"] = static_cast<double>(shares_moved) / spot::whole_share / moves;
+  state.counters["grains_per_move"] = static_cast<double>(volume_moved) / spot::grain_volume / moves;
 }
 
 /// Sweeps over all cells, with collecting the grains, walls and applying the pushes.
@@ -290,7 +290,7 @@ void register_kernels(const Kernels& kernels) {
                                  [run, &kernels](benchmark::State& state) { run(state, kernels); });
   };
   add("displace_a_move", displace);
-  add("shares_in_a_move", enclosed_shares);
+  add("shares_in_a_move", enclosed_volume);
   add("find_within_a_sphere", find_within);
   add("push_off_all_neighbours", push_off_neighbours);
   add("farthest_in_a_cell", farthest);

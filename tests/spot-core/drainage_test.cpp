@@ -92,7 +92,7 @@ class PlainDrainage {
     int enclosed = 0;
     for (const Grain& grain : grains_)
       enclosed += !grain.held && squared(grain.position - move.middle) <= spots_.radius * spots_.radius;
-    return spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed * spot::whole_share);
+    return spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed * spot::grain_volume);
   }
 
   bool relaxes_around(const Move& move) const {
@@ -311,7 +311,7 @@ void expect_identical(const Outcome& a, const Outcome& b) {
   scenes::expect_identical(a.left, b.left);
   scenes::expect_identical(a.drained, b.drained);
   EXPECT_EQ(a.counters.moves, b.counters.moves);
-  EXPECT_EQ(a.counters.shares_moved, b.counters.shares_moved);
+  EXPECT_EQ(a.counters.volume_moved, b.counters.volume_moved);
   EXPECT_EQ(a.counters.sweeps, b.counters.sweeps);
 }
 
@@ -463,13 +463,13 @@ TEST(DrainageUnit, MovesThatGrainsReceiveAreCounted) {
   drainage.advance_to(0.5);
   EXPECT_TRUE(drainage.take_moves_received().empty()) << "nobody has asked for it";
   const std::vector<Grain> before = drainage.grains();
-  const std::int64_t moved_before = drainage.counters().shares_moved;
+  const std::int64_t moved_before = drainage.counters().volume_moved;
   drainage.count_moves_received();
   drainage.advance_to(2.0);
   spot::MovesReceived received = drainage.take_moves_received();
   std::int64_t moved = 0;
   for (const auto& [id, moves] : received) moved += moves;
-  EXPECT_EQ(moved, (drainage.counters().shares_moved - moved_before) / spot::whole_share);
+  EXPECT_EQ(moved, (drainage.counters().volume_moved - moved_before) / spot::grain_volume);
   EXPECT_GT(drainage.counters().drained, 0);
   // Without relaxation every move takes a grain down by as much.
   const double down = drainage.quantum().round(strong_spots().influence * strong_spots().step_height);
@@ -489,7 +489,7 @@ TEST(DrainageUnit, CountersAddUp) {
   const spot::Counters& counters = drainage.counters();
   EXPECT_GT(counters.moves, 1000);
   EXPECT_LE(counters.sweeps, counters.moves / 5);
-  EXPECT_DOUBLE_EQ(counters.grains_per_move(), static_cast<double>(counters.shares_moved) / spot::whole_share /
+  EXPECT_DOUBLE_EQ(counters.grains_per_move(), static_cast<double>(counters.volume_moved) / spot::grain_volume /
                                                    static_cast<double>(counters.moves));
 }
 

@@ -81,14 +81,14 @@ TEST(KernelsInvariance, DisplacementIsTheSameInEveryBuild) {
     const auto start = points_in_box(400, 6.0, seed);
     const Point middle = point_at({3, 3, 3});
     const spot::Reach reach = seed % 2 == 0 ? uniform : parabolic;
-    const int shares = base.enclosed_shares(start.data(), start.size(), middle, reach);
-    EXPECT_GT(shares, 10 * spot::whole_share);
+    const int shares = base.enclosed_volume(start.data(), start.size(), middle, reach);
+    EXPECT_GT(shares, 10 * spot::grain_volume);
     auto plain = start;
     base.displace(plain.data(), plain.size(), middle, reach, by);
     for (const Kernels* build : spot::kernels::runnable()) {
       auto points = start;
-      EXPECT_EQ(build->enclosed_shares(points.data(), points.size(), middle, reach), shares);
-      EXPECT_EQ(build->enclosed_shares(points.data(), 0, middle, reach), 0);
+      EXPECT_EQ(build->enclosed_volume(points.data(), points.size(), middle, reach), shares);
+      EXPECT_EQ(build->enclosed_volume(points.data(), 0, middle, reach), 0);
       build->displace(points.data(), 0, middle, reach, by);
       expect_same(points, start, *build);
       build->displace(points.data(), points.size(), middle, reach, by);
@@ -127,7 +127,7 @@ TEST(KernelsAnalytic, ParabolicSharesFallWithTheSquareOfTheDistance) {
     EXPECT_NEAR(static_cast<double>(points[i].z) - start[i].z, -1e6 * share, 1.5) << i;
     sum += share;
   }
-  EXPECT_NEAR(base.enclosed_shares(start.data(), start.size(), middle, parabolic), sum * spot::whole_share,
+  EXPECT_NEAR(base.enclosed_volume(start.data(), start.size(), middle, parabolic), sum * spot::grain_volume,
               0.5 * sum + 200.0);
 }
 
@@ -138,7 +138,7 @@ TEST(KernelsUnit, DisplacementLeavesHeldAndEmptyPlacesAlone) {
     std::vector<Point> points(8, {0, 0, 0, Point::held});
     points[3] = points[6] = nobody;
     const auto before = points;
-    EXPECT_EQ(build->enclosed_shares(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}), 0);
+    EXPECT_EQ(build->enclosed_volume(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}), 0);
     build->displace(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}, {1, 1, 1, 0});
     expect_same(points, before, *build);
   }

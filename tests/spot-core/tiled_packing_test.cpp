@@ -29,7 +29,7 @@ using spot::SpotParameters;
 using spot::TiledPacking;
 using spot::Vector3;
 using spot::WalledContainer;
-using spot::whole_share;
+using spot::grain_volume;
 using spot::Workers;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -270,7 +270,7 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
     ASSERT_EQ(moved.size(), moves.size());
     for (std::size_t m = 0; m < moves.size(); ++m) {
       ASSERT_EQ(moved[m], plain.shares(moves[m], spots)) << "call " << call;
-      total += moved[m] / whole_share;
+      total += moved[m] / grain_volume;
     }
     for (const Move& move : moves) plain.displace(move, spots);
     for (int sweep = call % 3; sweep > 0; --sweep) {
@@ -425,7 +425,7 @@ TEST(TiledPackingUnit, SweepsOnlyCellsThatAreDue) {
   const RelaxationParameters relaxation;
   EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers), 0u) << "nobody has moved";
   moved = carry_out(packing, one_move({0, 0, 5}, {0.7, 0, 0.1}), {2.6, 2.5e-3}, *silo, workers);
-  EXPECT_GT(moved[0], 70 * whole_share);
+  EXPECT_GT(moved[0], 70 * grain_volume);
   EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(2, 1.0, *silo, workers), 0u);
   const std::size_t swept = spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers);
   EXPECT_GT(swept, 80u);
@@ -477,7 +477,7 @@ TEST(TiledPackingUnit, HeldGrainsStay) {
   Workers workers(1);
   std::vector<int> moved;
   moved = carry_out(packing, one_move({1, 1, 1}, {1, 0, 0}), {2.6, 2.5e-3}, *space, workers);
-  EXPECT_EQ(moved, std::vector<int>{whole_share});
+  EXPECT_EQ(moved, std::vector<int>{grain_volume});
   EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(1, 0.02, *space, workers), 1u);
   const auto grains = sorted_grains(packing);
   EXPECT_EQ(grains[0].position, Vector3(1, 1, 1));
@@ -593,7 +593,7 @@ TEST(TiledPackingUnit, SpotsThatAreTooWideAreNamed) {
               }),
               AllOf(HasSubstr("spot radius is 8 "), HasSubstr("below 8")));
   moved = carry_out(packing, one_move({8.9, 1, 1}, {1, 0, 0}), {7.99, 2.5e-3}, *space, workers);
-  EXPECT_EQ(moved[0], whole_share);
+  EXPECT_EQ(moved[0], grain_volume);
 }
 
 /// An empty place has id -1.

@@ -49,12 +49,12 @@ TEST(VolumeClosureSlow, FluxThroughEveryHeightEqualsOutflowAndWhatTheSpotsCarry)
   double moved_in_bulk = 0.0, bulk_moves = 0.0;
   const auto advance_to = [&](double time) {
     while (const auto move = moves.next_step(time, *silo)) {
-      const auto before = drainage.counters().shares_moved;
+      const auto before = drainage.counters().volume_moved;
       drainage.advance_to(move->time);
-      const auto moved = drainage.counters().shares_moved - before;
+      const auto moved = drainage.counters().volume_moved - before;
       if (moved == 0 && move->middle.z() > spots.radius) moves.remove(move->spot);
       if (move->middle.z() < bulk_low || move->middle.z() > bulk_high) continue;
-      moved_in_bulk += static_cast<double>(moved) / spot::whole_share;
+      moved_in_bulk += static_cast<double>(moved) / spot::grain_volume;
       ++bulk_moves;
     }
   };

@@ -98,7 +98,7 @@ class PlainWindows {
     for (auto& [move, live] : moves_of_window_) {
       const int shares = packing_.shares(move, spots_);
       ++moves;
-      shares_moved += shares;
+      volume_moved += shares;
       move.weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet, shares);
       if (shares == 0 && move.middle.z() > spots_.radius) live->out = true;
     }
@@ -108,7 +108,7 @@ class PlainWindows {
   }
 
   static constexpr double outlet = -1.0;
-  std::int64_t moves = 0, shares_moved = 0;
+  std::int64_t moves = 0, volume_moved = 0;
   std::vector<Grain> drained;
   std::vector<Grain> grains() const { return packing_.grains(); }
   const spot::MovesReceived& received() const { return packing_.received; }
@@ -164,7 +164,7 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   }
   scenes::expect_identical(drainage.take_drained(), by_id(plain.drained));
   EXPECT_EQ(drainage.counters().moves, plain.moves);
-  EXPECT_EQ(drainage.counters().shares_moved, plain.shares_moved);
+  EXPECT_EQ(drainage.counters().volume_moved, plain.volume_moved);
   EXPECT_EQ(drainage.take_moves_received(), plain.received());
   EXPECT_EQ(drainage.counters().sweeps, 0);
   EXPECT_GT(drainage.counters().drained, 50);
@@ -218,7 +218,7 @@ TEST(WindowedDrainageInvariance, ThreadsChangeNothing) {
   for (const int threads : {2, 3, 4}) {
     WindowedDrainage other = drainage_of(filling(15.0), spots, coarse_relaxation(), 0.02, threads);
     other.advance_to(6.0);
-    EXPECT_EQ(other.counters().shares_moved, one.counters().shares_moved) << threads;
+    EXPECT_EQ(other.counters().volume_moved, one.counters().volume_moved) << threads;
     EXPECT_EQ(other.counters().grains_swept, one.counters().grains_swept) << threads;
     scenes::expect_identical(other.grains(), one.grains());
     scenes::expect_identical(other.take_drained(), drained);

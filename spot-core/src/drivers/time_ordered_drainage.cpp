@@ -96,10 +96,10 @@ void TimeOrderedDrainage::carry_out(Move move) {
   packing_.find_movable(move.middle, reach, near_);
   if (spot_parameters().fixed_volume > 0.0)
     move.weight = fixed_volume_weight(spot_parameters(), move.middle.z() - limits().outlet,
-                                      enclosed_shares(packing_, near_, move, spot_parameters()));
-  const int shares = displace(packing_, near_, move, spot_parameters(), received());
-  count_move(shares);
-  if (shares == 0) {
+                                      enclosed_volume(packing_, near_, move, spot_parameters()));
+  const int enclosed = displace(packing_, near_, move, spot_parameters(), received());
+  count_move(enclosed);
+  if (enclosed == 0) {
     // Below the orifice a spot may meet no grains yet; above it, it has come out at the top of the packing.
     if (move.middle.z() > container().orifice().centre.z() + spot_parameters().radius) spots_.remove(move.spot);
     return;

@@ -126,7 +126,7 @@ void WindowedDrainage::displace() {
       container(), *workers_, received());
 }
 
-/// `enclosed`: of this rank's grains.
+/// `enclosed`: volume of this rank's grains in each move.
 void WindowedDrainage::weigh(const std::vector<int>& enclosed, std::vector<Move>& moves) {
   moves_.sum_enclosed(enclosed);
   for (SharedMove& shared : moves_.all())
@@ -159,7 +159,7 @@ void WindowedDrainage::take_out_drained() {
 
 Counters WindowedDrainage::total() {
   const Counters& own = counters();
-  const auto sums = communicator_->sum({own.moves, own.shares_moved, own.drained});
+  const auto sums = communicator_->sum({own.moves, own.volume_moved, own.drained});
   return {sums[0], sums[1], own.sweeps, own.grains_swept, sums[2]};
 }
 

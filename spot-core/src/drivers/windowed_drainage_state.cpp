@@ -27,7 +27,7 @@ std::vector<Bytes> WindowedDrainage::read(const std::vector<Bytes>& saved) {
     counters.grains_swept = read.grains_swept;
     if (communicator_->rank() == 0) {  // which goes on counting for all
       counters.moves += read.moves;
-      counters.shares_moved += read.shares_moved;
+      counters.volume_moved += read.volume_moved;
       counters.drained += read.drained;
     }
     spots_.restore(reader);

@@ -68,31 +68,31 @@ const std::vector<int>& BlockMoves::find(const std::vector<Move>& moves, const S
   set_parts(workers.size());
   workers.run([&](int worker) { find(parts_[static_cast<std::size_t>(worker)], moves, spots.radius); });
   for (std::size_t layer = 0; layer < work.size(); ++layer) work[layer] += cells_reached_[layer];
-  shares_.assign(moves.size(), 0);
+  enclosed_.assign(moves.size(), 0);
   for (const Part& part : parts_)
-    for (std::size_t m = 0; m < moves.size(); ++m) shares_[m] += part.shares[m];
-  return shares_;
+    for (std::size_t m = 0; m < moves.size(); ++m) enclosed_[m] += part.enclosed[m];
+  return enclosed_;
 }
 
-/// The rows of cells that the moves may reach, and the shares of the grains there.
+/// The rows of cells that the moves may reach, and the enclosed of the grains there.
 void BlockMoves::find(Part& part, const std::vector<Move>& moves, double radius) {
   const CellLattice& lattice = cells_.lattice();
   const double reach = BlockMoves::reach(radius, lattice);
   part.rows.clear();
   part.end_of_rows.clear();
-  part.shares.clear();
+  part.enclosed.clear();
   for (std::size_t m = 0; m < moves.size(); ++m) {
     const std::size_t before = part.rows.size();
     lattice.find_rows(moves[m].middle - lattice.low(), reach, part.first_layer, part.last_layer, part.rows);
-    int shares = 0;
+    int enclosed = 0;
     for (std::size_t r = before; r < part.rows.size(); ++r) {
       const CellRow& row = part.rows[r];
       const std::uint32_t first = cells_.first_slot(row.first), n = cells_.first_slot(row.last) - first;
-      shares += kernels_.enclosed_shares(cells_.points.data() + first, n, middles_[m], reach_);
+      enclosed += kernels_.enclosed_volume(cells_.points.data() + first, n, middles_[m], reach_);
       cells_reached_[cells_.layer_of(row.first)] += row.last - row.first;
     }
     part.end_of_rows.push_back(part.rows.size());
-    part.shares.push_back(shares);
+    part.enclosed.push_back(enclosed);
   }
 }
 
@@ -173,8 +173,8 @@ void BlockMoves::count_received(std::uint32_t first, std::uint32_t n, const Poin
 }
 
 std::size_t BlockMoves::memory() const {
-  std::size_t bytes = bytes_in(parts_, cells_reached_, middles_, steps_, shares_, received_);
-  for (const Part& part : parts_) bytes += bytes_in(part.rows, part.end_of_rows, part.shares);
+  std::size_t bytes = bytes_in(parts_, cells_reached_, middles_, steps_, enclosed_, received_);
+  for (const Part& part : parts_) bytes += bytes_in(part.rows, part.end_of_rows, part.enclosed);
   return bytes;
 }
 

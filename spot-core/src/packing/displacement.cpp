@@ -11,36 +11,36 @@ double largest_weight(const SpotParameters& parameters) {
   return std::max(1.0, parameters.fixed_volume / calibration::least_enclosed);
 }
 
-double fixed_volume_weight(const SpotParameters& parameters, double height, int shares) {
+double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed) {
   if (parameters.fixed_volume == 0.0) return 1.0;
   const double part = parameters.profile->part_above(height / parameters.radius);
-  const double grains = static_cast<double>(shares) / whole_share;
+  const double grains = static_cast<double>(enclosed) / grain_volume;
   return parameters.fixed_volume * part / std::max(grains, calibration::least_enclosed * part + 1e-9);
 }
 
 namespace {
 
-/// Of a grain with this volume_parts().
-int parts_of(double share, int volume) { return static_cast<int>(share * volume); }
+/// Of a grain with this volume_parts() and share of the influence.
+int volume_of(int grain, double share) { return static_cast<int>(share * grain); }
 
 }  // namespace
 
-int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
+int enclosed_volume(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
                     const SpotParameters& spots) {
-  int shares = 0;
+  int enclosed = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
-    if (squared <= spots.radius * spots.radius) 
-      shares += parts_of(spots.profile->share(squared, spots.radius), packing.volume(i));
+    if (squared <= spots.radius * spots.radius)
+      enclosed += volume_of(packing.volume(i), spots.profile->share(squared, spots.radius));
   }
-  return shares;
+  return enclosed;
 }
 
 int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move, const SpotParameters& spots,
              MovesReceived* received) {
   const Quantum& quantum = packing.quantum();
   const Vector3 whole = -spots.influence * move.weight * move.step;
-  int shares = 0;
+  int enclosed = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
     if (squared > spots.radius * spots.radius) continue;
@@ -48,9 +48,9 @@ int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const M
     const Vector3 by = share * whole;
     packing.move(i, quantum.round(by.x()), quantum.round(by.y()), quantum.round(by.z()));
     if (received) ++(*received)[packing.id(i)];
-    shares += parts_of(share, packing.volume(i));
+    enclosed += volume_of(packing.volume(i), share);
   }
-  return shares;
+  return enclosed;
 }
 
 }  // namespace spot

@@ -19,7 +19,7 @@ double radius_in(double diameter, const Grain& grain) {
 
 int volume_parts(double diameter, double radius) {
   const double ratio = 2.0 * radius / diameter;
-  return static_cast<int>(std::nearbyint(whole_share * (ratio * ratio * ratio)));
+  return static_cast<int>(std::nearbyint(grain_volume * (ratio * ratio * ratio)));
 }
 
 }  // namespace spot

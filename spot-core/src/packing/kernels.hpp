@@ -37,8 +37,8 @@ struct Push {
 struct Kernels {
   const char* instruction_set;
 
-  /// The shares of the points in a move around `middle`, together, each cut to whole parts (whole_share).
-  int (*enclosed_shares)(const Point* points, std::size_t n, const Point& middle, const Reach& reach);
+  /// The shares of the points in a move around `middle`, together, each cut to whole parts (grain_volume).
+  int (*enclosed_volume)(const Point* points, std::size_t n, const Point& middle, const Reach& reach);
 
   /// Adds to every point its share of `by`, cut to whole quanta.
   void (*displace)(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by);

@@ -14,7 +14,7 @@ using spot::kernels::ahead;
 using spot::kernels::Lists;
 
 /// Of a whole share.
-constexpr float parts = spot::whole_share;
+constexpr float parts = spot::grain_volume;
 
 /// Differences of states are seen only where an empty place is on one side.
 constexpr std::int32_t only_empty = Point::empty;
@@ -43,7 +43,7 @@ float share(const Point& point, const Point& middle, const Reach& reach) {
   return linear > 0.0f ? linear < 1.0f ? linear : 1.0f : 0.0f;
 }
 
-int enclosed_shares(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+int enclosed_volume(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
   int shares = 0;
   for (std::size_t i = 0; i < n; ++i) shares += static_cast<int>(share(points[i], middle, reach) * parts);
   return shares;
@@ -266,7 +266,7 @@ inline Floats shares(Pack points, Pack middle, Floats radius_squared, Floats per
   return positive < one ? positive : one;
 }
 
-int enclosed_shares(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+int enclosed_volume(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
   const Pack centre = repeat(load_point(middle));
   const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square);
   Pack sum = {};
@@ -377,7 +377,7 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 namespace spot::kernels {
 
 extern const Kernels SPOT_KERNELS;
-const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_shares, &displace,    &push_off_neighbours, &correct,
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_volume, &displace,    &push_off_neighbours, &correct,
                               &find_within,         &farthest,        &find_reached};
 
 }  // namespace spot::kernels

@@ -81,6 +81,7 @@ class Drainage {
   std::vector<Grain> take_drained();
 
   /// Counts from now on how many moves move each grain, which is not free.
+  /// `enclosed`: grain volume (1024 = grain_volume).
   void count_moves_received() { received_.emplace(); }
 
   /// What was counted since the last call, on this rank. A grain that came from another rank has been counted there,
@@ -104,9 +105,10 @@ class Drainage {
   double diameter() const { return diameter_; }
   MovesReceived* received() { return received_ ? &*received_ : nullptr; }
 
-  void count_move(std::int64_t shares) {
+  /// `enclosed`: grain volume (1024 = grain_volume).
+  void count_move(std::int64_t enclosed) {
     ++counters_.moves;
-    counters_.shares_moved += shares;
+    counters_.volume_moved += enclosed;
   }
   void count_sweep(std::size_t grains) {
     ++counters_.sweeps;

@@ -17,7 +17,7 @@ namespace spot {
 struct SharedMove {
   Move move;
   int owner;         ///< rank to which the spot belongs after the window
-  int enclosed = 0;  ///< grain volume that it encloses, as far as is known here, in 1024ths of a grain's
+  int enclosed = 0;  ///< grain volume that it encloses, as far as is known here, in 1024ths of a grain's (grain_volume)
 };
 
 /// The moves of one window, and what ranks tell each other about them: the moves themselves, the volume that each

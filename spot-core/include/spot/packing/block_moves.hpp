@@ -33,8 +33,8 @@ class BlockMoves {
   /// From the middle of a move to the references of the grains that it may move.
   static double reach(double radius, const CellLattice& lattice);
 
-  /// Finds what moves reach. `work`: cells reached are added to it, layer by layer. Returns the shares of own grains in
-  /// each move.
+  /// Finds what moves reach. `work`: cells reached are added to it, layer by layer. Returns the volume of own
+  /// grains that each encloses.
   const std::vector<int>& find(const std::vector<Move>& moves, const SpotParameters& spots, Workers& workers,
                                std::vector<std::int64_t>& work);
 
@@ -59,7 +59,7 @@ class BlockMoves {
     int first_layer, last_layer;
     std::vector<CellRow> rows;             // of cells that moves may reach, move by move
     std::vector<std::size_t> end_of_rows;  // in `rows`, of each move
-    std::vector<int> shares;               // of the grains here in each move
+    std::vector<int> enclosed;             // volume of the grains here, by each move
     std::size_t counted;                   // the end of the moves whose lengths are in the drift of cells
     bool must_rebuild;                     // has the drift of a cell become too long?
 
@@ -83,7 +83,7 @@ class BlockMoves {
   std::vector<std::int64_t> cells_reached_;  // by the moves of a window, in each own layer, and 1
   std::vector<Point> middles_, steps_;
   Reach reach_{};
-  std::vector<int> shares_;              // of own grains in each move
+  std::vector<int> enclosed_;            // volume of own grains, by each move
   std::vector<std::uint32_t> received_;  // moves of the grain in each slot, where they are counted
   bool must_rebuild_ = false;
 };

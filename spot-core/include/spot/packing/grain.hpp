@@ -29,7 +29,7 @@ struct Overlap {
 /// unless it is given as 0, for half of the diameter, or is between a quarter and half of it.
 double radius_in(double diameter, const Grain& grain);
 
-/// The volume of a grain over that of a grain of the reference diameter, in whole 1024ths (whole_share), so that sums
+/// The volume of a grain over that of a grain of the reference diameter, in whole 1024ths (grain_volume), so that sums
 /// are exact: 128 to 1024.
 int volume_parts(double diameter, double radius);
 

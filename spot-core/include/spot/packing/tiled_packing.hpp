@@ -65,8 +65,8 @@ class TiledPacking {
   /// Calls visit(grain) for all grains of this rank, in no particular order.
   void visit_grains(const std::function<void(const Grain&)>& visit) const;
 
-  /// Gives moves their weights, when it is told the shares of this rank's grains in each of them.
-  using Weigh = std::function<void(const std::vector<int>& shares, std::vector<Move>& moves)>;
+  /// Gives moves their weights, when it is told the volume of this rank's grains that each of them encloses.
+  using Weigh = std::function<void(const std::vector<int>& enclosed, std::vector<Move>& moves)>;
 
   /// Collective. Applies the moves, one after the other to every grain, as displace() does. They are weighed before the
   /// first one is applied. Each counts as an unrelaxed move of all cells that it may have reached.
