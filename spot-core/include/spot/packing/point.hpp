@@ -24,7 +24,6 @@ struct alignas(16) Point {
                                 empty = 1 << 30;
 };
 
-
 /// Whom a move reaches: the share of a free point is (radius^2 - r^2) per_square, but no more than 1.
 struct Reach {
   float radius_squared, per_square;
