@@ -8,16 +8,16 @@ import json
 import math
 import os
 
-from spot_analysis.interpreter import require_packages
+from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import numpy as np  # noqa: E402  (only after the check above)
 
-from spot_analysis import command_line  # noqa: E402
-from spot_analysis.dump import read_frames  # noqa: E402
-from spot_analysis.errors import AnalysisError  # noqa: E402
-from spot_analysis.snapshot import LAG_TAU  # noqa: E402
+from spot_analysis.base.errors import AnalysisError  # noqa: E402
+from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.dump import read_frames  # noqa: E402
+from spot_analysis.statistics.snapshot import LAG_TAU  # noqa: E402
 
 STEP = 0.05  # tau; below the time in which a grain at the orifice falls by a tenth of a diameter
 TIMESTEP = 1e-4  # tau, of one step of TIMESTEP in the dumps, as in the DEM reference

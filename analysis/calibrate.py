@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Infer the parameters of the spot model, with errors, from the dumps of a DEM run."""
 
-from spot_analysis.interpreter import require_packages
+from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "matplotlib", "zstandard")
 

@@ -5,16 +5,18 @@ distance to the nearest edge of a cell, and, for comparison, in cells of other s
 
 import argparse
 
-from spot_analysis.interpreter import require_packages
+from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "zstandard")
 
-from spot_analysis import cell_imprint, command_line  # noqa: E402  (only after the check above)
-from spot_analysis.dump import read_frames  # noqa: E402
-from spot_analysis.interval import STEADY_FROM  # noqa: E402
-from spot_analysis.progress import Progress  # noqa: E402
-from spot_analysis.scene import load_scene  # noqa: E402
-from spot_analysis.snapshot import LAG_TAU, TIME_TOLERANCE, History, Snapshot  # noqa: E402
+from spot_analysis.base.progress import Progress  # noqa: E402  (only after the check above)
+from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.dump import read_frames  # noqa: E402
+from spot_analysis.reading.scene import load_scene  # noqa: E402
+from spot_analysis.statistics import cell_imprint, fold  # noqa: E402
+from spot_analysis.statistics.history import History  # noqa: E402
+from spot_analysis.statistics.interval import STEADY_FROM  # noqa: E402
+from spot_analysis.statistics.snapshot import LAG_TAU, TIME_TOLERANCE, Snapshot  # noqa: E402
 
 CONTROLS = (1.2, 1.3, 1.4, 1.6, 1.7, 1.8)  # d
 
@@ -49,7 +51,7 @@ def main():
     found = measure(parse_arguments())
     print("| axis | quantity | blocks | chi-square (7) | p | rms deviation | of scatter alone | at an edge, in the middle | p in cells of "
           + ", ".join(f"{period:g}" for period in CONTROLS) + " d |\n" + "|---" * 9 + "|")
-    for axis in cell_imprint.AXES:
+    for axis in fold.AXES:
         for quantity in cell_imprint.QUANTITIES:
             one = found[axis, cell_imprint.EDGE][quantity]
             deviation, scatter = one.depth()

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Measure the dumps of a run and store the statistics, so that compare.py needs no dumps."""
 
-from spot_analysis.interpreter import require_packages
+from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "zstandard")
 

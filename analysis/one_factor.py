@@ -10,17 +10,22 @@ import shutil
 import subprocess
 import sys
 
-from spot_analysis.interpreter import require_packages
+from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import numpy as np  # noqa: E402  (only after the check above)
 
-from spot_analysis import (bond_angles, bond_order, command_line, comparison, counts, front, packing,  # noqa: E402
-                           particle_diffusion, profile_width, radial_distribution, run_statistics, thickness,
-                           velocity_correlation)
-from spot_analysis.errors import AnalysisError  # noqa: E402
-from spot_analysis.scene import load_scene  # noqa: E402
+from spot_analysis.base.errors import AnalysisError  # noqa: E402
+from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.log import reason_of_failure  # noqa: E402
+from spot_analysis.reading.scene import load_scene  # noqa: E402
+from spot_analysis.report import comparison  # noqa: E402
+from spot_analysis.statistics import (bond_angles, bond_order, counts, front, packing, particle_diffusion,  # noqa: E402
+                                      profile_width, radial_distribution, run_statistics, thickness, velocity_correlation)
+from spot_analysis.statistics.interval import choose_interval, common_times  # noqa: E402
+from spot_analysis.statistics.interval_view import IntervalView  # noqa: E402
+from spot_analysis.statistics.measuring import measure_dumps  # noqa: E402
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 MEASURED = (velocity_correlation, particle_diffusion, bond_angles, bond_order, thickness)
@@ -98,10 +103,8 @@ def run_deck(options, choice, seed):
         done = subprocess.run([*shlex.split(options.lmp), "-in", os.path.basename(options.deck), "-log", "none", *words],
                               cwd=os.path.dirname(os.path.abspath(options.deck)), capture_output=True, text=True)
         if done.returncode != 0:
-            lines = (done.stdout + done.stderr).strip().splitlines() or ["no output"]
-            reason = next((line for line in lines if line.startswith("ERROR")), lines[-1])
-            raise AnalysisError(f"lmp failed on '{choice}': {reason}")
-        run_statistics.measure(dumps, load_scene(dumps), name, {"source": choice}, command_line.print_warning,
+            raise AnalysisError(f"lmp failed on '{choice}': {reason_of_failure(done.stdout + done.stderr)}")
+        measure_dumps(dumps, load_scene(dumps), name, {"source": choice}, command_line.print_warning,
                                MEASURED).save(stored)
         if not options.dumps:
             shutil.rmtree(dumps)
@@ -110,9 +113,9 @@ def run_deck(options, choice, seed):
 
 def rows(dem, spot, start=None, end=None):
     """The comparison's rows of QUANTITIES from ``start`` to ``end`` (tau), by default over the steady part."""
-    common = comparison.common_times(dem, spot)
-    interval = comparison.choose_interval(dem.times[common[0]], start, end)
-    found = comparison.compare(*(comparison.IntervalView(run, place, interval) for run, place in zip((dem, spot), common)),
+    common = common_times(dem, spot)
+    interval = choose_interval(dem.times[common[0]], start, end)
+    found = comparison.compare(*(IntervalView(run, place, interval) for run, place in zip((dem, spot), common)),
                                sections={"": CONCEPTS})
     return [row for row in found if row.name in QUANTITIES]
 

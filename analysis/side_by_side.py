@@ -4,14 +4,16 @@
 
 import argparse
 
-from spot_analysis.interpreter import require_packages
+from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import one_factor  # noqa: E402  (only after the check above)
-from spot_analysis import command_line, comparison, run_statistics  # noqa: E402
-from spot_analysis.errors import AnalysisError  # noqa: E402
-from spot_analysis.scene import load_scene  # noqa: E402
+from spot_analysis.base.errors import AnalysisError  # noqa: E402
+from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.scene import load_scene  # noqa: E402
+from spot_analysis.statistics import run_statistics  # noqa: E402
+from spot_analysis.statistics.measuring import measure_dumps  # noqa: E402
 
 
 def parse_arguments():
@@ -27,7 +29,7 @@ def measured(path):
     """Statistics, from dumps if these are given."""
     if path.endswith(".npz"):
         return run_statistics.load(path)
-    return run_statistics.measure(path, load_scene(path), path, {"source": path}, command_line.print_warning, one_factor.MEASURED)
+    return measure_dumps(path, load_scene(path), path, {"source": path}, command_line.print_warning, one_factor.MEASURED)
 
 
 def read_column(words):

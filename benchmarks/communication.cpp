@@ -22,6 +22,7 @@
 #include "ranks_of_threads.hpp"
 #include "read_grains.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
+#include "spot/geometry/silos.hpp"
 #include "spot/walk/spot_walk.hpp"
 #include "spot_command.h"
 
@@ -142,7 +143,7 @@ template <typename Start>
 WindowedDrainage drainage(const Start& start, const std::shared_ptr<spot::Communicator>& ranks) {
   const spot::SpotParameters spots = spot_parameters();
   return {spots,
-          SpotCommand::relaxation_of(Accuracy::normal, spots.profile),
+          SpotCommand::relaxation_of(Accuracy::normal, *spots.profile),
           spot::DrainageLimits{0.0},
           window,
           1,
@@ -172,7 +173,7 @@ struct Report {
   std::array<Traffic, kinds> traffic;
   double processor;  // s, without talking
   std::size_t memory;
-  std::int64_t grains, spots, shares_moved, moves, sweeps;
+  std::int64_t grains, spots, volume_moved, moves, sweeps;
 };
 
 /// Of the windows from `from` to `to`. Before them ranks have shared the layers out.
@@ -196,7 +197,7 @@ Report measure(const std::vector<Bytes>& saved, double from, double to, std::sha
   report.memory = draining.memory();
   draining.visit_grains([&](const spot::Grain&) { ++report.grains; });
   report.spots = static_cast<std::int64_t>(draining.spots().size());
-  report.shares_moved = draining.counters().shares_moved - before.shares_moved;
+  report.volume_moved = draining.counters().volume_moved - before.volume_moved;
   report.moves = draining.counters().moves - before.moves;
   report.sweeps = draining.counters().sweeps - before.sweeps;
   return report;
@@ -208,7 +209,7 @@ void print(const std::vector<Report>& reports, double windows) {
     std::printf("%zu,%zu,%.0f,%lld,%lld,%zu,%.6g,%.6g,%.6g,%.6g", reports.size(), rank, windows,
                 static_cast<long long>(one.grains), static_cast<long long>(one.spots), one.memory,
                 1e3 * one.processor / windows, static_cast<double>(one.moves) / windows,
-                static_cast<double>(one.shares_moved) / spot::whole_share / windows,
+                static_cast<double>(one.volume_moved) / spot::grain_volume / windows,
                 static_cast<double>(one.sweeps) / windows);
     for (const Traffic& kind : one.traffic)
       std::printf(",%.6g,%.6g,%.6g", static_cast<double>(kind.calls) / windows,

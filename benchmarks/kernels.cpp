@@ -9,11 +9,14 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "read_grains.hpp"
+#include "spot/geometry/silos.hpp"
 #include "spot/packing/tiled_packing.hpp"
+#include "spot/relaxation/cell_relaxation.hpp"
 #include "spot/walk/spot_walk.hpp"
 
 namespace {
@@ -34,7 +37,7 @@ const std::vector<spot::Grain>& grains() {
 
 /// Cells of 1.5 d with eight slots each, x fastest, and lists of the neighbours within 1.5 d.
 struct Tiles {
-  static constexpr std::uint32_t slots = 8, list_capacity = 16;
+  static constexpr std::uint32_t slots = 8, list_capacity = spot::kernels::lanes;
   static constexpr double edge = 1.5, reach = 1.5;
 
   std::array<int, 3> cells = {};
@@ -42,6 +45,7 @@ struct Tiles {
   spot::AlignedVector<Point> points;
   std::vector<std::uint32_t> grains;  // slots of them
   spot::AlignedVector<std::uint32_t> lists;
+  std::vector<std::uint32_t> blocks;
   std::vector<std::uint8_t> list_size;
 
   Tiles() {
@@ -50,6 +54,8 @@ struct Tiles {
     points.assign(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]) * slots, Point{0, 0, 0, Point::empty});
     lists.assign(points.size() * list_capacity, 0);
     list_size.assign(points.size(), 0);
+    blocks.resize(points.size());
+    std::iota(blocks.begin(), blocks.end(), 0u);
     for (const spot::Grain& grain : ::grains()) {
       const std::uint32_t first = cell(grain.position) * slots;
       for (std::uint32_t slot = first; slot < first + slots; ++slot)
@@ -164,12 +170,12 @@ void displace(benchmark::State& state, const Kernels& kernels) {
 }
 
 /// The shares in a move.
-void enclosed_shares(benchmark::State& state, const Kernels& kernels) {
+void enclosed_volume(benchmark::State& state, const Kernels& kernels) {
   const auto radius_squared = static_cast<float>(radius * radius * quanta * quanta);
   per_sphere(state, radius, [&](std::uint32_t first, std::uint32_t n, const Point& centre, std::size_t) {
-    return static_cast<std::size_t>(kernels.enclosed_shares(tiles().points.data() + first, n, centre,
+    return static_cast<std::size_t>(kernels.enclosed_volume(tiles().points.data() + first, n, centre,
                                                             {radius_squared, 1.0f / radius_squared})) /
-           spot::whole_share;
+           spot::grain_volume;
   });
 }
 
@@ -190,7 +196,7 @@ void push_off_neighbours(benchmark::State& state, const Kernels& kernels) {
   grains.resize(grains.size() + spot::kernels::ahead, 0);
   for (auto _ : state) {
     kernels.push_off_neighbours(all.points.data(), grains.data(), all.grains.size(),
-                                {all.lists.data(), all.list_size.data(), Tiles::list_capacity},
+                                {all.lists.data(), all.blocks.data(), all.list_size.data()},
                                 {static_cast<float>(1.0 / (quanta * quanta)), 0.4f, 0.8f}, pushes.data());
     benchmark::DoNotOptimize(pushes.data());
     benchmark::ClobberMemory();
@@ -239,9 +245,9 @@ void moves_of_a_window(benchmark::State& state) {
   spot::SpotParameters spots{radius, influence};
   spots.profile = spot::InfluenceProfile::parabolic;
   std::vector<std::vector<spot::Move>> windows(16);
-  std::size_t shares_moved = 0;
-  const auto weigh = [&shares_moved](const std::vector<int>& shares, std::vector<spot::Move>&) {
-    for (const int share : shares) shares_moved += static_cast<std::size_t>(share);
+  std::size_t volume_moved = 0;
+  const auto weigh = [&volume_moved](const std::vector<int>& shares, std::vector<spot::Move>&) {
+    for (const int share : shares) volume_moved += static_cast<std::size_t>(share);
   };
   const auto places = middles(n * windows.size() / 2);
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -260,7 +266,7 @@ void moves_of_a_window(benchmark::State& state) {
   }
   const auto moves = static_cast<double>(state.iterations()) * static_cast<double>(n);
   state.SetItemsProcessed(static_cast<std::int64_t>(moves));
-  state.counters["grains_per_move"] = static_cast<double>(shares_moved) / spot::whole_share / moves;
+  state.counters["grains_per_move"] = static_cast<double>(volume_moved) / spot::grain_volume / moves;
 }
 
 /// Sweeps over all cells, with collecting the grains, walls and applying the pushes.
@@ -270,8 +276,9 @@ void sweep_over_all(benchmark::State& state) {
   parameters.alpha = 1.2;
   parameters.momentum = 0.7;
   std::size_t swept = 0;
-  for (auto _ : state)  // with 0 moves every cell is due
-    swept += silo.packing.sweep(parameters, 0, 1.0, *silo.container, silo.workers);
+  spot::CellRelaxation relaxation(silo.packing, parameters);
+  for (auto _ : state)  // of all cells
+    swept += relaxation.sweep(0, 1.0, *silo.container, silo.workers);
   state.SetItemsProcessed(static_cast<std::int64_t>(swept));
   state.counters["bytes_per_grain"] =
       static_cast<double>(silo.packing.memory()) / static_cast<double>(silo.packing.size());
@@ -283,7 +290,7 @@ void register_kernels(const Kernels& kernels) {
                                  [run, &kernels](benchmark::State& state) { run(state, kernels); });
   };
   add("displace_a_move", displace);
-  add("shares_in_a_move", enclosed_shares);
+  add("shares_in_a_move", enclosed_volume);
   add("find_within_a_sphere", find_within);
   add("push_off_all_neighbours", push_off_neighbours);
   add("farthest_in_a_cell", farthest);

@@ -24,16 +24,17 @@ BENCHMARKS = ROOT / "benchmarks"
 EXAMPLE = ROOT / "examples" / "silo"
 sys.path.insert(0, str(ROOT / "analysis"))
 
-from spot_analysis.interpreter import require_packages  # noqa: E402
+from spot_analysis.base.interpreter import require_packages  # noqa: E402
 
 require_packages("numpy", "scipy", "zstandard")
 
 import numpy as np  # noqa: E402
-from spot_analysis import packing, radial_distribution, run_statistics, structure  # noqa: E402
-from spot_analysis.counts import FLUX_HEIGHTS  # noqa: E402
-from spot_analysis.dump import read_frames  # noqa: E402
-from spot_analysis.errors import AnalysisError  # noqa: E402
-from spot_analysis.interval import Interval, IntervalView  # noqa: E402
+from spot_analysis.base.errors import AnalysisError  # noqa: E402
+from spot_analysis.reading.dump import read_frames  # noqa: E402
+from spot_analysis.statistics import neighbours, packing, radial_distribution, run_statistics, structure  # noqa: E402
+from spot_analysis.statistics.counts import FLUX_HEIGHTS  # noqa: E402
+from spot_analysis.statistics.interval import Interval  # noqa: E402
+from spot_analysis.statistics.interval_view import IntervalView  # noqa: E402
 
 DIAMETER, GRAVITY = 0.003, 9.81  # m, m/s2: of all decks
 TAU = math.sqrt(DIAMETER / GRAVITY)  # s
@@ -327,8 +328,8 @@ def quality(spot, reference):
     samples, sums = [], 0.0
     for frame in read_frames(str(spot.folder / "spot.*.dump")):
         positions = frame.positions / DIAMETER
-        pairs = structure.region_pairs(positions, region)
-        counts = structure.rdf_counts(pairs).reshape(-1, radial_distribution.REBIN).sum(axis=1)
+        pairs = neighbours.region_pairs(positions, region)
+        counts = radial_distribution.rdf_counts(pairs).reshape(-1, radial_distribution.REBIN).sum(axis=1)
         sums = sums + np.array([*counts, pairs.grains, 1.0])
         samples.append([structure.badness(pairs), structure.contacts_per_grain(pairs),
                         structure.packing_fraction(pairs.grains, region, container), len(positions),

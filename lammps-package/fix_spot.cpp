@@ -23,6 +23,8 @@
 #include "spot/base/memory.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
+#include "spot/geometry/silos.hpp"
+#include "spot_calibration.h"
 #include "spot_command.h"
 
 #include <algorithm>
@@ -225,11 +227,10 @@ void FixSpot::choose_window() {
   const bool steps = update->nsteps > 0;
   double window = command.window.value_or(update->dt);
   if (!command.window && !*command.time_ordered) {
-    // Longer windows relax more of the neighbouring cells at the same time, which is both cheaper and closer to DEM,
-    // until grains go too far in one (analysis/README.md).
     const double flow =
         spot::WindowedDrainage::flow_through_orifice(command.spots, 1.0, model->diameter, command.orifice->radius);
-    const double longest = std::min(0.32 * model->diameter / command.spots.speed, 0.15 / flow);
+    const double longest = std::min(calibration::climb_in_a_window * model->diameter / command.spots.speed,
+                                    calibration::flow_in_a_window / flow);
     window = update->dt / std::ceil(update->dt / longest - 1e-9);
   }
   if (window != model->window) model->drainage.reset();  // in which there have been no windows yet
@@ -380,7 +381,10 @@ void FixSpot::make_container() {
 ------------------------------------------------------------------------- */
 
 spot::Grain FixSpot::grain_of_lammps(int i) const {
-  return {atom->tag[i], {atom->x[i][0], atom->x[i][1], atom->x[i][2]}, (atom->mask[i] & groupbit) == 0};
+  return {atom->tag[i],
+          {atom->x[i][0], atom->x[i][1], atom->x[i][2]},
+          (atom->mask[i] & groupbit) == 0,
+          0.5 * model->diameter};
 }
 
 std::vector<spot::Grain> FixSpot::grains_of_lammps() const {
@@ -561,7 +565,7 @@ void FixSpot::tell_all_who_leaves() {
   spot::Bytes own;
   spot::append(own, model->leaving);
   model->leaving.clear();
-  for (const spot::Bytes &bytes : model->ranks->exchange(std::vector<spot::Bytes>(comm->nprocs, own)))
+  for (const spot::Bytes &bytes : model->ranks->share_with_all(own))
     for (const tagint grain : spot::ByteReader(bytes).take_all<tagint>()) model->leaving.push_back(grain);
 }
 

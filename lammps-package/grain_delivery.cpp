@@ -64,11 +64,15 @@ struct Whereabouts {
   std::int64_t id;
   double position[3];
   bool held;
+  double radius;
 
   explicit Whereabouts(const spot::Grain &grain)
-      : id(grain.id), position{grain.position[0], grain.position[1], grain.position[2]}, held(grain.held) {}
+      : id(grain.id),
+        position{grain.position[0], grain.position[1], grain.position[2]},
+        held(grain.held),
+        radius(grain.radius) {}
   Whereabouts() = default;
-  spot::Grain grain() const { return {id, {position[0], position[1], position[2]}, held}; }
+  spot::Grain grain() const { return {id, {position[0], position[1], position[2]}, held, radius}; }
 };
 
 std::vector<Bytes> sort_by_meeting(const std::vector<spot::Grain> &grains, int ranks) {

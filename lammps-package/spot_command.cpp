@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "spot/base/errors.hpp"
+#include "spot_calibration.h"
 
 using spot::InvalidParameter;
 using spot::message;
@@ -185,9 +186,10 @@ const std::map<std::string, Reader>& readers() {
        }},
       {"profile",
        [](SpotCommand& c, Words& w) {
-         c.spots.profile = one_of<spot::InfluenceProfile>(
-             w, "profile",
-             {{"uniform", spot::InfluenceProfile::uniform}, {"parabolic", spot::InfluenceProfile::parabolic}});
+         std::map<std::string, const spot::InfluenceProfile*> profiles;
+         for (const spot::InfluenceProfile* profile : spot::InfluenceProfile::all())
+           profiles[profile->name()] = profile;
+         c.spots.profile = one_of<const spot::InfluenceProfile*>(w, "profile", profiles);
        }},
       {"alpha", [](SpotCommand& c, Words& w) { c.alpha = w.positive("alpha"); }},
       {"momentum", [](SpotCommand& c, Words& w) { c.momentum = w.not_negative("the momentum"); }},
@@ -219,7 +221,7 @@ void require(bool given, const char* keyword, const char* what) {
 
 SpotCommand parse_spot_command(const std::vector<std::string>& list) {
   SpotCommand command;
-  command.spots.influence = 2.5e-3;
+  command.spots.influence = calibration::influence;
   Words words(list);
   while (!words.empty()) {
     const std::string keyword = words.keyword();
@@ -249,15 +251,11 @@ std::size_t modify_spot_command(SpotCommand& command, const std::vector<std::str
   return words.taken();
 }
 
-double SpotCommand::radius_in_diameters(spot::InfluenceProfile profile) {
-  return profile == spot::InfluenceProfile::uniform ? 2.6 : 3.53;
-}
-
 double SpotCommand::step_height_in_diameters(Accuracy accuracy) {
   return accuracy == Accuracy::exact ? 0.1 : accuracy == Accuracy::normal ? 1.2 : 2.4;
 }
 
-spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile) {
+spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, const spot::InfluenceProfile& profile) {
   // Chosen from the curves of benchmarks/time_vs_error.py. More momentum and a larger alpha are cheaper for the same
   // overlaps, but take g(r) away from DEM's, from less on if spots are uniform.
   spot::RelaxationParameters relaxation;
@@ -265,7 +263,7 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::I
   const bool fast = accuracy == Accuracy::fast;
   relaxation.tolerance = fast ? 4e-3 : 1.7e-3;
   relaxation.alpha = fast ? 1.0 : 0.8;
-  relaxation.momentum = profile == spot::InfluenceProfile::uniform ? 0.5 : fast ? 0.6 : 0.67;
+  relaxation.momentum = fast ? profile.calibrated().fast_momentum : profile.calibrated().momentum;
   relaxation.contact_overlap = fast ? 0.0 : 1.5e-3;
   return relaxation;
 }
@@ -273,17 +271,17 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, spot::I
 void SpotCommand::resolve(double diameter) {
   time_ordered = time_ordered.value_or(accuracy == Accuracy::exact);
   // What is relaxed in the order of time is relaxed as in 2006 and 2010.
-  const spot::RelaxationParameters chosen = relaxation_of(*time_ordered ? Accuracy::exact : accuracy, spots.profile);
+  const spot::RelaxationParameters chosen = relaxation_of(*time_ordered ? Accuracy::exact : accuracy, *spots.profile);
   relaxation.tolerance = tolerance.value_or(chosen.tolerance);
   relaxation.alpha = alpha.value_or(chosen.alpha);
   relaxation.momentum = *time_ordered ? 0.0 : momentum.value_or(chosen.momentum);
   relaxation.contact_overlap = contact_overlap.value_or(chosen.contact_overlap);
-  if (spots.radius == 0.0) spots.radius = radius_in_diameters(spots.profile) * diameter;
+  if (spots.radius == 0.0) spots.radius = spots.profile->calibrated().radius_in_diameters * diameter;
   if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
-  spots.step_width =
-      spot::step_width_for(diffusion_length.value_or(1.25 * diameter), spots.step_height, spots.persistence);
-  side_buffer = side_buffer.value_or(0.25 * diameter);
-  base_buffer = base_buffer.value_or(2.0 * diameter);
+  spots.step_width = spot::step_width_for(diffusion_length.value_or(calibration::diffusion_length * diameter),
+                                          spots.step_height, spots.persistence);
+  side_buffer = side_buffer.value_or(calibration::side_buffer * diameter);
+  base_buffer = base_buffer.value_or(calibration::base_buffer * diameter);
   outlet = outlet.value_or(orifice->centre.z());
 }
 
@@ -304,7 +302,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
   return {{"walls", text_of_walls(walls)},
           {"orifice", precise(centre.x(), ' ', centre.y(), ' ', centre.z(), ' ', orifice->radius)},
           {"radius", precise(spots.radius)},
-          {"profile", spots.profile == spot::InfluenceProfile::uniform ? "uniform" : "parabolic"},
+          {"profile", spots.profile->name()},
           {"influence", precise(spots.influence)},
           {"dz", precise(spots.step_height)},
           {"diffusion", precise(spots.diffusion_length())},

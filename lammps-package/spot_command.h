@@ -8,7 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "spot/geometry/container.hpp"
+#include "spot/geometry/orifice.hpp"
+#include "spot/relaxation/calibration.hpp"
 #include "spot/walk/parameters.hpp"
 
 /// `box xlo xhi ylo yhi`: four vertical plane walls.
@@ -48,9 +49,9 @@ struct SpotCommand {
   std::optional<double> outlet;
   std::optional<double> side_buffer, base_buffer;
   std::optional<double> window;
-  double largest_overlap = 0.03;  // in diameters
-  int average = 100;              // steps over which the outflow is averaged
-  bool per_atom = false;          // output of what has become of each grain
+  double largest_overlap = spot::calibration::largest_overlap_at_start;  // in diameters
+  int average = 100;                                                     // steps over which the outflow is averaged
+  bool per_atom = false;                                                 // output of what has become of each grain
 
   SpotCommand() { spots.profile = spot::InfluenceProfile::parabolic; }
 
@@ -59,9 +60,8 @@ struct SpotCommand {
   void resolve(double diameter);
 
   /// The parameters of an accuracy.
-  static double radius_in_diameters(spot::InfluenceProfile profile);
   static double step_height_in_diameters(Accuracy accuracy);
-  static spot::RelaxationParameters relaxation_of(Accuracy accuracy, spot::InfluenceProfile profile);
+  static spot::RelaxationParameters relaxation_of(Accuracy accuracy, const spot::InfluenceProfile& profile);
 
   /// All that decides where grains and spots go, as text, once it is resolved, but for the window. `threads`, `average`
   /// and `peratom` are not in it.

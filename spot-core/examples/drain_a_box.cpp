@@ -6,6 +6,7 @@
 
 #include "spot/base/errors.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
+#include "spot/geometry/silos.hpp"
 
 /// A body-centred lattice of the packing fraction that dense flow has, 0.58, filling the box up to a height.
 std::vector<spot::Grain> lattice(double half_width, double half_depth, double height) {

@@ -95,7 +95,7 @@ def middle_of(points):
 
 def make_snapshots(packings, times, container, region):
     """Snapshots of packings (n, 3); a row that is not a number is a grain that has left."""
-    from spot_analysis.snapshot import Snapshot
+    from spot_analysis.statistics.snapshot import Snapshot
     for time, packing in zip(times, packings):
         here = np.isfinite(packing[:, 0])
         yield Snapshot(float(time), np.flatnonzero(here) + 1, packing[here], container, region)
@@ -105,7 +105,8 @@ def measure(concept, packings, times, container, region):
     """The arrays of ``concept``.Measurement after these packings, as RunStatistics.measured holds them."""
     from types import SimpleNamespace
 
-    from spot_analysis.snapshot import LAG_TAU, History
+    from spot_analysis.statistics.history import History
+    from spot_analysis.statistics.snapshot import LAG_TAU
     measurement, history = concept.Measurement(container, region), History(LAG_TAU)
     for snapshot in make_snapshots(packings, times, container, region):
         history.add(snapshot)

@@ -2,19 +2,14 @@
 """The baselines: a packing that stays, and a flow that closes its volume and spreads as it should."""
 
 import json
-import subprocess
-import sys
 
+import baseline
 import numpy as np
 import pytest
-from spot_analysis.dump import read_frames
+from spot_analysis.reading.dump import read_frames
 
-from conftest import ANALYSIS
+from conftest import script
 from synthetic import frame_text, write_text
-
-sys.path.insert(0, str(ANALYSIS))
-
-import baseline  # noqa: E402  (a script beside the package)
 
 SCENE = {"diameter": 0.01, "gravity": 1.0, "timestep": 0.01, "half_width_x": 0.25, "half_depth_y": 0.04, "orifice_radius": 0.04}
 
@@ -45,8 +40,7 @@ def packing(tmp_path):
 
 
 def frames(packing, folder, model):
-    done = subprocess.run([sys.executable, "-B", str(ANALYSIS / "baseline.py"), model, packing, "-o", str(folder), "--time", "10"],
-                          capture_output=True, text=True)
+    done = script("baseline.py", model, packing, "-o", folder, "--time", 10)
     assert done.returncode == 0, done.stderr
     return list(read_frames(str(folder)))
 
@@ -69,8 +63,7 @@ def test_outflow_of_the_kinematic_model(packing, tmp_path):
 @pytest.mark.parametrize("option", ["--time", "--outflow", "--diffusion", "--start"])
 @pytest.mark.parametrize("value", ["0", "-1", "nan", "inf"])
 def test_bad_number(packing, tmp_path, option, value):
-    done = subprocess.run([sys.executable, "-B", str(ANALYSIS / "baseline.py"), "kinematic", packing, "-o", str(tmp_path / "out"),
-                           f"{option}={value}"], capture_output=True, text=True)
+    done = script("baseline.py", "kinematic", packing, "-o", tmp_path / "out", f"{option}={value}")
     assert done.returncode == 1
     assert done.stderr == f"error: {option} is {float(value):g} but must be positive and finite\n"
     assert not (tmp_path / "out").exists()

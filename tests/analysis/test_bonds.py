@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from scipy.special import sph_harm
-from spot_analysis import bond_angles, bond_order
-from spot_analysis.bonds import BOND_CUTOFF, find_bonds
-from spot_analysis.container import Region
+from spot_analysis.statistics import bond_angles, bond_order
+from spot_analysis.statistics.bonds import BOND_CUTOFF, find_bonds
+from spot_analysis.statistics.region import Region
 
 from synthetic import fcc, hcp, middle_of, sequential_packing
 

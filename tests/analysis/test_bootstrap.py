@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from spot_analysis.bootstrap import block_sums, bootstrap_error
+from spot_analysis.statistics.bootstrap import block_sums, bootstrap_error
 
 
 def mean(sums):

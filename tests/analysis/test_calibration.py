@@ -9,13 +9,19 @@ import sys
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-from spot_analysis import (calibration, calibration_output, calibration_refinement, calibration_response, calibration_view,
-                           run_statistics)
-from spot_analysis.bootstrap import RESAMPLES
-from spot_analysis.calibration_estimate import CalibrationError, Estimate
-from spot_analysis.scene import load_scene
+from spot_analysis.calibration.estimate import CalibrationError, Estimate
+from spot_analysis.calibration.lammps_variables import RADII, lammps_variables
+from spot_analysis.calibration.measurement import measure
+from spot_analysis.calibration.parameters import parameters, response_of
+from spot_analysis.calibration.refinement import deck_text, refine
+from spot_analysis.calibration.response import NAMES, STORED, stored_response
+from spot_analysis.calibration.view import CONCEPTS
+from spot_analysis.reading.scene import load_scene
+from spot_analysis.report import calibration_output
+from spot_analysis.statistics.bootstrap import RESAMPLES
+from spot_analysis.statistics.measuring import measure_dumps
 
-from conftest import ANALYSIS
+from conftest import ANALYSIS, script
 
 SCENE = {"program": "synthetic", "diameter": 1.0, "gravity": 1.0, "timestep": 0.01,
          "half_width_x": 25.0, "half_depth_y": 4.0, "orifice_radius": 4.0}
@@ -23,7 +29,6 @@ TIMES = np.arange(40, 70.1, 2.0)
 FLOW, DENSITY, SPREADING, RADIUS, MISSING = 50.0, 0.8, 0.7, 2.6, 440  # spreading so little that no wall is felt
 KICKS, KICK = 3000, 0.0126  # spheres a step; standard deviation, d
 KICKED = np.array([[-14, -3, 8], [14, 3, 78]])  # where their centres lie
-COMMAND = (sys.executable, "-B", str(ANALYSIS / "calibrate.py"))
 
 
 def flow_of_spots(x, z):
@@ -64,15 +69,11 @@ def dumps(tmp_path_factory):
     return folder
 
 
-def script(*arguments):
-    return subprocess.run([*COMMAND, *map(str, arguments)], capture_output=True, text=True, env={**os.environ})
-
-
 @pytest.fixture(scope="module")
 def result(dumps, tmp_path_factory):
     folder = tmp_path_factory.mktemp("result")
     files = [folder / name for name in ("parameters", "calibration.json", "plots")]
-    done = script(dumps, "--response", "2006", "--buffer", 1, "-o", files[0], "--json", files[1], "--plots", files[2])
+    done = script("calibrate.py", dumps, "--response", "2006", "--buffer", 1, "-o", files[0], "--json", files[1], "--plots", files[2])
     assert done.returncode == 0, done.stderr
     return done, json.loads(files[1].read_text()), files
 
@@ -135,7 +136,7 @@ def test_parabolic_spots_have_the_volume_of_the_uniform_ones(result):
                   for name, number in result[1]["parameters"].items()}
 
     def deck(profile):
-        lines = calibration_output.lammps_variables(parameters, "nothing", (0, 0), profile).splitlines()
+        lines = lammps_variables(parameters, "nothing", (0, 0), profile).splitlines()
         return {line.split()[1]: line.split()[3] for line in lines if line.startswith("variable")}
 
     uniform, parabolic = deck("uniform"), deck("parabolic")
@@ -152,7 +153,7 @@ def test_plots(result):
 
 
 def fails(*arguments):
-    done = script(*arguments)
+    done = script("calibrate.py", *arguments)
     assert done.returncode == 1 and "Traceback" not in done.stderr
     last = done.stderr.strip().splitlines()[-1]
     assert last.startswith("error: "), done.stderr
@@ -179,29 +180,29 @@ def test_packing_at_rest_is_refused(dumps, tmp_path):
 
 @pytest.fixture(scope="module")
 def measured(dumps):
-    run = run_statistics.measure(str(dumps), load_scene(str(dumps)), concepts=calibration_view.CONCEPTS)
-    return calibration.measure(run, buffer=1.0)
+    run = measure_dumps(str(dumps), load_scene(str(dumps)), concepts=CONCEPTS)
+    return measure(run, buffer=1.0)
 
 
 def test_response_undoes_itself(measured):
     """Parameters put in come back when the response was measured on the same run."""
     put_in = {"radius": 2.3, "influence": 2e-3, "diffusion": 1.1, "speed": 3.0, "injection": 400.0}
-    slopes = calibration_response.stored_response("windowed")
-    found = calibration.parameters(measured, calibration.response_of(measured, put_in, slopes))
+    slopes = stored_response("windowed")
+    found = parameters(measured, response_of(measured, put_in, slopes))
     for name, value in put_in.items():
         assert found[name].value == pytest.approx(value, rel=1e-6), name
 
 
 def test_influence_that_relaxation_hides_is_refused(measured):
-    response = {**calibration_response.stored_response("unrelaxed"), "particle_diffusion": measured.diffusion.length}
+    response = {**stored_response("unrelaxed"), "particle_diffusion": measured.diffusion.length}
     with pytest.raises(CalibrationError, match="w is not determined: .* of b_p = .* relaxation alone makes"):
-        calibration.parameters(measured, response)
+        parameters(measured, response)
 
 
 def test_stored_responses_name_every_parameter():
-    for driver in calibration_response.STORED:
-        response = calibration_response.stored_response(driver)
-        assert set(response) == set(calibration_response.NAMES)
+    for driver in STORED:
+        response = stored_response(driver)
+        assert set(response) == set(NAMES)
         assert all(0 <= value.value < 1.5 for value in response.values())
 
 
@@ -213,12 +214,12 @@ def fake_lmp(folder, body):
 
 def test_refinement_ends_where_the_run_shows_the_target(measured, dumps, tmp_path):
     """A model that always shows the target: whatever was put in stays."""
-    nothing = calibration_response.stored_response("2006")
-    start = calibration.parameters(measured, nothing)
+    nothing = stored_response("2006")
+    start = parameters(measured, nothing)
     deck = ANALYSIS.parent / "examples" / "silo" / "in.silo_spot"
     lmp = fake_lmp(tmp_path, f"shutil.copytree({str(dumps)!r}, out)")
     said = []
-    found, response = calibration_refinement.refine(measured, nothing, 1, str(deck), lmp, 90, "dz 0.0006", print, said.append)
+    found, response = refine(measured, nothing, 1, str(deck), lmp, 90, "dz 0.0006", print, said.append)
     for name, value in start.items():
         assert found[name].value == pytest.approx(value.value, rel=1e-5), name
     assert response["radius"].value == pytest.approx(0, abs=1e-5)
@@ -227,24 +228,24 @@ def test_refinement_ends_where_the_run_shows_the_target(measured, dumps, tmp_pat
 
 
 def test_failing_runs_are_refused(measured, tmp_path):
-    nothing = calibration_response.stored_response("2006")
+    nothing = stored_response("2006")
     deck = str(ANALYSIS.parent / "examples" / "silo" / "in.silo_spot")
 
-    def refine(lmp, deck=deck):
-        return calibration_refinement.refine(measured, nothing, 1, deck, lmp, 90)
+    def refined(lmp, deck=deck):
+        return refine(measured, nothing, 1, deck, lmp, 90)
 
     with pytest.raises(CalibrationError, match="lmp failed on .*: ERROR: no fix spot"):
-        refine(fake_lmp(tmp_path, "print('LAMMPS')\nprint('ERROR: no fix spot')\nsys.exit(1)"))
+        refined(fake_lmp(tmp_path, "print('LAMMPS')\nprint('ERROR: no fix spot')\nsys.exit(1)"))
     with pytest.raises(CalibrationError, match="cannot run absent-lmp: No such file"):
-        refine("absent-lmp")
+        refined("absent-lmp")
     (tmp_path / "in.other").write_text("units si\n")
     with pytest.raises(CalibrationError, match="0 commands 'fix ID group spot'"):
-        refine("lmp", str(tmp_path / "in.other"))
+        refined("lmp", str(tmp_path / "in.other"))
 
 
 def test_deck_for_a_refinement():
     deck = ANALYSIS.parent / "examples" / "silo" / "in.silo_spot"
-    lines = calibration_refinement.deck_text(str(deck), "/tmp/p", 90, "dz 0.0006").splitlines()
+    lines = deck_text(str(deck), "/tmp/p", 90, "dz 0.0006").splitlines()
     place = next(number for number, line in enumerate(lines) if line.split()[:2] == ["variable", "profile"])
     assert lines[place - 3:place] == ["include /tmp/p", "variable time delete", "variable time equal 90*v_tau"]
     fix = next(line for line in lines if line.startswith("fix "))
@@ -253,3 +254,10 @@ def test_deck_for_a_refinement():
 
 def test_unknown_numbers_are_null():
     assert calibration_output.described(Estimate(np.array(np.nan), np.full(10, np.nan)), "d")["value"] is None
+
+
+@pytest.mark.skipif("SPOT_PRINT_PROFILES" not in os.environ, reason="ctest names the program of spot-core")
+def test_profiles_have_the_radii_of_the_library():
+    lines = subprocess.run([os.environ["SPOT_PRINT_PROFILES"]], capture_output=True, text=True, check=True).stdout
+    library = {name: float(radius) for name, _, radius in (line.split() for line in lines.splitlines())}
+    assert RADII == pytest.approx(library, rel=1e-12)

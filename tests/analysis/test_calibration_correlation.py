@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-from spot_analysis import calibration_correlation as correlation
-from spot_analysis import velocity_correlation
-from spot_analysis.calibration_estimate import CalibrationError, estimate
-from spot_analysis.container import Region
-from spot_analysis.mean_flow import SIZE
+from spot_analysis.calibration import correlation
+from spot_analysis.calibration.estimate import CalibrationError, estimate
+from spot_analysis.statistics import velocity_correlation
+from spot_analysis.statistics.mean_flow import SIZE
+from spot_analysis.statistics.region import Region
 
 SPAN = (40.0, 64.0)
 TIMES = np.arange(41.0, 64.0, 2.0)

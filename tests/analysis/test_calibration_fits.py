@@ -3,9 +3,9 @@
 
 import numpy as np
 import pytest
-from spot_analysis.calibration_estimate import CalibrationError, Estimate, combine, estimate
-from spot_analysis.calibration_fits import fit_family
-from spot_analysis.fits import fit_line
+from spot_analysis.calibration.estimate import CalibrationError, Estimate, combine, estimate
+from spot_analysis.calibration.fits import fit_family
+from spot_analysis.statistics.fits import fit_line
 
 X = np.linspace(0, 4, 30)
 RATES = np.arange(0.1, 3, 0.05)

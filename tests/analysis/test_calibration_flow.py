@@ -5,12 +5,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from spot_analysis import calibration_flow as flow
-from spot_analysis import calibration_spot_grains as spot_grains
-from spot_analysis.calibration_estimate import CalibrationError
-from spot_analysis.calibration_front import measure_front
-from spot_analysis.calibration_view import choose_snapshots, view_of
-from spot_analysis.container import Container
+from spot_analysis.calibration import flow, spot_grains
+from spot_analysis.calibration.estimate import CalibrationError
+from spot_analysis.calibration.front import measure_front
+from spot_analysis.calibration.view import choose_snapshots, view_of
+from spot_analysis.reading.container import Container
 
 SILO = Container(25.0, 4.0, 4.0)
 TIMES = np.arange(40, 92.1, 2.0)

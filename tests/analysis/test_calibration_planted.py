@@ -5,12 +5,18 @@ import os
 
 import numpy as np
 import pytest
-from spot_analysis import (calibration, calibration_output, calibration_refinement, calibration_response, calibration_view,
-                           run_statistics)
-from spot_analysis.bootstrap import RESAMPLES
-from spot_analysis.calibration_estimate import Estimate
-from spot_analysis.progress import Progress
-from spot_analysis.scene import load_scene
+from spot_analysis.base.progress import Progress
+from spot_analysis.calibration.estimate import Estimate
+from spot_analysis.calibration.lammps_variables import lammps_variables
+from spot_analysis.calibration.measurement import measure
+from spot_analysis.calibration.parameters import parameters
+from spot_analysis.calibration.refinement import run_deck
+from spot_analysis.calibration.response import stored_response
+from spot_analysis.calibration.view import CONCEPTS
+from spot_analysis.reading.scene import load_scene
+from spot_analysis.report import calibration_output
+from spot_analysis.statistics.bootstrap import RESAMPLES
+from spot_analysis.statistics.measuring import measure_dumps
 
 from conftest import ANALYSIS
 
@@ -24,12 +30,12 @@ DURATION = 88.0  # tau
 def test_planted_parameters_lie_within_their_error_bars(tmp_path):
     """Three standard errors for each of five; the values of the stored response come from other runs."""
     planted = {name: Estimate(np.array(value), np.full(RESAMPLES, value)) for name, value in PLANTED.items()}
-    variables = calibration_output.lammps_variables(planted, "nothing", (0, 0))
-    calibration_refinement.run_deck(str(ROOT / "examples" / "silo" / "in.silo_spot"), LMP, variables, str(tmp_path), DURATION,
+    variables = lammps_variables(planted, "nothing", (0, 0))
+    run_deck(str(ROOT / "examples" / "silo" / "in.silo_spot"), LMP, variables, str(tmp_path), DURATION,
                                     "", Progress("planted"))
     dumps = str(tmp_path / "dumps")
-    measured = calibration.measure(run_statistics.measure(dumps, load_scene(dumps), concepts=calibration_view.CONCEPTS))
-    found = calibration.parameters(measured, calibration_response.stored_response("windowed"))
+    measured = measure(measure_dumps(dumps, load_scene(dumps), concepts=CONCEPTS))
+    found = parameters(measured, stored_response("windowed"))
     print(calibration_output.table(found, planted))
     for name, value in PLANTED.items():
         assert found[name].value == pytest.approx(value, abs=3 * found[name].error), name

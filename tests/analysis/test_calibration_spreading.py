@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from spot_analysis import calibration_spreading as spreading
-from spot_analysis.calibration_estimate import CalibrationError, estimate
-from spot_analysis.container import Container
+from spot_analysis.calibration import spreading
+from spot_analysis.calibration.estimate import CalibrationError, estimate
+from spot_analysis.reading.container import Container
 
 CONTAINER = Container(25.0, 4.0, 4.0)
 EDGES = np.linspace(-25, 25, 51)

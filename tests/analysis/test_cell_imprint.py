@@ -2,16 +2,14 @@
 """cell_imprint.py: none is found where there is none, and what is planted is."""
 
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
+from spot_analysis.reading.container import Container
+from spot_analysis.statistics import cell_imprint
+from spot_analysis.statistics.snapshot import Snapshot
 
-from conftest import ANALYSIS
-from spot_analysis import cell_imprint
-from spot_analysis.container import Container
-from spot_analysis.snapshot import Snapshot
+from conftest import script
 from synthetic import frame_text, write_text
 
 CONTAINER = Container(25.0, 4.0, 4.0)
@@ -61,7 +59,7 @@ def test_planted_density_is_found(axis, name):
     found = imprints(seed=10, axis=axis, depth=0.02)
     grains = found[name, cell_imprint.EDGE]["grains"]
     assert grains.p_value < 1e-4
-    expected = 1 - 2 * np.pi * 0.02 * np.cos(2 * np.pi * cell_imprint.DISTANCES / cell_imprint.EDGE)
+    expected = 1 - 2 * np.pi * 0.02 * np.cos(2 * np.pi * cell_imprint.DISTANCE / cell_imprint.EDGE)
     assert np.all(np.abs(grains.profile - expected) < 4 * grains.error + 0.02)  # to first order, before the step
     assert found["z" if name == "x" else "x", cell_imprint.EDGE]["grains"].p_value > 1e-3
     assert found[name, cell_imprint.EDGE]["sideways"].p_value > 1e-3
@@ -86,8 +84,7 @@ def test_command(tmp_path):
                                                      "half_depth_y": 4.0, "orifice_radius": 4.0}))
     for number, packing in enumerate(next(packings(seed=3))):
         write_text(tmp_path / f"run.{200 * number}.dump.gz", frame_text(200 * number, np.arange(1, len(packing) + 1), packing))
-    done = subprocess.run([sys.executable, "-B", str(ANALYSIS / "cell_imprint.py"), str(tmp_path), "--from", "0"],
-                          capture_output=True, text=True)
+    done = script("cell_imprint.py", tmp_path, "--from", 0)
     assert done.returncode == 0, done.stderr
     rows = [line.split(" | ") for line in done.stdout.splitlines()[2:]]
     assert [row[0].strip("| ") + " " + row[1] for row in rows] == ["x grains", "x overlap", "x sideways", "z grains", "z overlap", "z sideways"]

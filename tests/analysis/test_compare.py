@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import pytest
-from spot_analysis.figures import SECTIONS as FIGURES
+from spot_analysis.report.figures import SECTIONS as FIGURES
 
 from conftest import ANALYSIS
 from synthetic import LAYER, SCENE, frame_text, write_plug_flow, write_text

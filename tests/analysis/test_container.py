@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-from spot_analysis.container import Container, Region, structure_region
+from spot_analysis.reading.container import Container
+from spot_analysis.statistics.region import Region, structure_region
 
 SILO = Container(25, 4, 4)
 

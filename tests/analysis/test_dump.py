@@ -6,8 +6,8 @@ import gzip
 import numpy as np
 import pytest
 import zstandard
-from spot_analysis.dump import find_dumps, read_file, read_frames
-from spot_analysis.errors import DumpError, TruncatedFrame
+from spot_analysis.base.errors import DumpError, TruncatedFrame
+from spot_analysis.reading.dump import find_dumps, read_file, read_frames
 
 from synthetic import frame_text, write_text
 

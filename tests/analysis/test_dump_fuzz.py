@@ -8,8 +8,8 @@ import os
 import numpy as np
 import pytest
 import zstandard
-from spot_analysis.dump import read_frames
-from spot_analysis.errors import DumpError
+from spot_analysis.base.errors import DumpError
+from spot_analysis.reading.dump import read_frames
 
 from synthetic import frame_text
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from spot_analysis import flow, profile_width
+from spot_analysis.statistics import flow, profile_width
 
 
 def test_count_above_is_strict():

@@ -7,9 +7,10 @@ import subprocess
 
 import numpy as np
 import pytest
-from spot_analysis import structure, voronoi
-from spot_analysis.container import Container, Region
-from spot_analysis.dump import read_file
+from spot_analysis.reading.container import Container
+from spot_analysis.reading.dump import read_file
+from spot_analysis.statistics import neighbours, radial_distribution, voronoi_cells
+from spot_analysis.statistics.region import Region
 
 from synthetic import sequential_packing
 
@@ -44,10 +45,10 @@ def test_rdf_of_a_periodic_packing(tmp_path):
     shifts = np.array(list(itertools.product((-1, 0, 1), (0,), (-1, 0, 1)))) * BOX
     images = (points + shifts[:, None]).reshape(-1, 3) - [6, 4, 0]
     # the region is one period, but for grains that lie on its border
-    pairs = structure.region_pairs(images, Region(6, 0, BOX[2]))
+    pairs = neighbours.region_pairs(images, Region(6, 0, BOX[2]))
     assert pairs.grains == len(points)
-    np.testing.assert_allclose(structure.rdf_counts(pairs), expected, rtol=1e-4, atol=0.01)
-    np.testing.assert_allclose(np.cumsum(structure.rdf_counts(pairs)) / len(points), rows[:, 3], rtol=1e-4)
+    np.testing.assert_allclose(radial_distribution.rdf_counts(pairs), expected, rtol=1e-4, atol=0.01)
+    np.testing.assert_allclose(np.cumsum(radial_distribution.rdf_counts(pairs)) / len(points), rows[:, 3], rtol=1e-4)
 
 
 def test_voronoi_cells_between_walls(tmp_path):
@@ -57,7 +58,7 @@ def test_voronoi_cells_between_walls(tmp_path):
         "dump out all custom 1 cells.dump id x y z c_cells[1]\ndump_modify out sort id format float %.12g")
     frame = next(read_file(str(tmp_path / "cells.dump"), extra=("c_cells[1]",)))
     expected = frame.extra["c_cells[1]"]
-    volumes = voronoi.cells_in_container(points, Container(6, 4, 1e-9))
+    volumes = voronoi_cells.cells_in_container(points, Container(6, 4, 1e-9))
     # the lid of LAMMPS' box is no wall here
     compared = (points[:, 2] < 10) & np.isfinite(volumes)
     assert compared.sum() > 500

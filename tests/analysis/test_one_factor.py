@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """one_factor.py on a plug that falls: table, its spread over seeds, and runs that are kept."""
 
-import subprocess
 import sys
 
 import pytest
 
-from conftest import ANALYSIS
+from conftest import script
 from synthetic import write_plug_flow
 
 TIMES = range(0, 26, 2)
-
-
-def one_factor(*arguments):
-    return subprocess.run([sys.executable, "-B", str(ANALYSIS / "one_factor.py"), *map(str, arguments)], capture_output=True,
-                          text=True)
 
 
 @pytest.fixture(scope="module")
@@ -22,13 +16,12 @@ def study(tmp_path_factory):
     """A deck whose seeds 1 and 2 fall by half a layer and a whole one in 2 tau; DEM falls by a layer."""
     folder = tmp_path_factory.mktemp("study")
     runs = [write_plug_flow(folder / name, speed, TIMES) for name, speed in (("slow", 0.5), ("fast", 1.0))]
-    done = subprocess.run([sys.executable, "-B", str(ANALYSIS / "measure.py"), runs[1], "-o", folder / "dem.npz"])
-    assert done.returncode == 0
+    assert script("measure.py", runs[1], "-o", folder / "dem.npz").returncode == 0
     lmp = folder / "lmp.py"
     lmp.write_text("import shutil, sys\nword = lambda name: sys.argv[sys.argv.index(name) + 1]\n"
                    f"shutil.copytree({runs!r}[int(word('seed')) - 1], word('out'))\n")
     options = (folder / "dem.npz", "-o", folder / "out", "--seeds", 1, 2, "--only", "alpha 1.0")
-    return folder, options, one_factor(*options, "--lmp", f"{sys.executable} {lmp}")
+    return folder, options, script("one_factor.py", *options, "--lmp", f"{sys.executable} {lmp}")
 
 
 def test_table(study):
@@ -42,7 +35,7 @@ def test_table(study):
 
 def test_runs_are_kept(study):
     _, options, done = study
-    assert one_factor(*options, "--lmp", "absent").stdout == done.stdout
+    assert script("one_factor.py", *options, "--lmp", "absent").stdout == done.stdout
 
 
 def test_time_and_dumps(study, tmp_path):
@@ -50,7 +43,7 @@ def test_time_and_dumps(study, tmp_path):
     lmp = tmp_path / "lmp.py"
     lmp.write_text("import sys\nprint(sys.argv[sys.argv.index('time') + 1], file=open('" + str(tmp_path / "time") + "', 'w'))\n"
                    + (folder / "lmp.py").read_text())
-    done = one_factor(options[0], "-o", tmp_path / "out", "--seeds", 1, "--only", "alpha 1.0", "--time", 26, "--dumps",
+    done = script("one_factor.py", options[0], "-o", tmp_path / "out", "--seeds", 1, "--only", "alpha 1.0", "--time", 26, "--dumps",
                       "--lmp", f"{sys.executable} {lmp}")
     assert done.returncode == 0, done.stderr
     assert float((tmp_path / "time").read_text()) == pytest.approx(26 * (0.003 / 9.81)**0.5)
@@ -59,5 +52,6 @@ def test_time_and_dumps(study, tmp_path):
 
 def test_failing_runs_are_refused(study, tmp_path):
     _, options, _ = study
-    done = one_factor(options[0], "-o", tmp_path, "--seeds", 1, "--lmp", f"{sys.executable} -c 'import sys; sys.exit(\"ERROR: no\")'")
+    done = script("one_factor.py", options[0], "-o", tmp_path, "--seeds", 1,
+                  "--lmp", f"{sys.executable} -c 'import sys; sys.exit(\"ERROR: no\")'")
     assert done.returncode == 1 and done.stderr.strip().endswith("error: lmp failed on 'the deck': ERROR: no")

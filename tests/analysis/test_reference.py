@@ -5,7 +5,11 @@ import pathlib
 
 import numpy as np
 import pytest
-from spot_analysis import comparison, run_statistics
+from spot_analysis.report import comparison
+from spot_analysis.statistics import run_statistics
+from spot_analysis.statistics.counts import FLUX_HEIGHTS
+from spot_analysis.statistics.interval import choose_interval
+from spot_analysis.statistics.interval_view import IntervalView
 
 STORED = pathlib.Path(__file__).resolve().parents[2] / "examples" / "silo" / "reference" / "dem-statistics.npz"
 
@@ -16,8 +20,8 @@ def dem():
 
 
 def quantities(dem, start, end):
-    interval = comparison.choose_interval(dem.times, start, end)
-    return comparison.quantities(comparison.IntervalView(dem, np.arange(len(dem.times)), interval))
+    interval = choose_interval(dem.times, start, end)
+    return comparison.quantities(IntervalView(dem, np.arange(len(dem.times)), interval))
 
 
 WINDOWS = pytest.mark.parametrize("window, span", [(0, (40, 92)), (1, (250, 300))])
@@ -62,7 +66,7 @@ def test_no_grain_is_ever_outside(dem):
 def test_fluxes_equal_the_outflow(dem):
     """Over 200-304 tau; within 2 % or two standard errors."""
     measured = quantities(dem, 200, 304)
-    for height in comparison.FLUX_HEIGHTS:
+    for height in FLUX_HEIGHTS:
         ratio = measured[f"flux_{height}d_over_outflow"]
         assert ratio.value == pytest.approx(1, abs=max(0.02, 2 * ratio.error))
 

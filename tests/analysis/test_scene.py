@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from spot_analysis.errors import SceneError
-from spot_analysis.scene import KEYS, NUMBERS, ORIGIN, load_scene
+from spot_analysis.base.errors import SceneError
+from spot_analysis.reading.scene import KEYS, NUMBERS, ORIGIN, load_scene
 
 from synthetic import SCENE
 

@@ -1,20 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """side_by_side.py on plugs that fall: means over runs, an interval, statistics and dumps alike."""
 
-import subprocess
-import sys
-
 import pytest
 
-from conftest import ANALYSIS
+from conftest import script
 from synthetic import write_plug_flow
 
 TIMES = range(0, 10, 2)
-
-
-def side_by_side(*arguments):
-    return subprocess.run([sys.executable, "-B", str(ANALYSIS / "side_by_side.py"), *map(str, arguments)], capture_output=True,
-                          text=True)
 
 
 @pytest.fixture(scope="module")
@@ -32,19 +24,19 @@ def outflow(done):
 def test_means_and_spread(runs, tmp_path):
     slow, fast, faster = runs
     stored = tmp_path / "fast.npz"
-    assert subprocess.run([sys.executable, "-B", str(ANALYSIS / "measure.py"), fast, "-o", stored]).returncode == 0
-    done = side_by_side(stored, f"two={slow},{fast}", f"one={faster}")
+    assert script("measure.py", fast, "-o", stored).returncode == 0
+    done = script("side_by_side.py", stored, f"two={slow},{fast}", f"one={faster}")
     assert done.stdout.splitlines()[0] == "| | DEM | two | one |"
     assert outflow(done) == "| outflow (1/tau) | 80 | 60 +- 28 | 160 |"
 
 
 def test_interval(runs):
-    whole, part = (side_by_side(runs[1], f"faster={runs[2]}", *words) for words in ((), ("--from", 2, "--to", 6)))
+    whole, part = (script("side_by_side.py", runs[1], f"faster={runs[2]}", *words) for words in ((), ("--from", 2, "--to", 6)))
     assert outflow(whole) == outflow(part)
     assert whole.stdout != part.stdout
 
 
 @pytest.mark.parametrize("column", ["name", "=run", "name="])
 def test_columns_without_runs(runs, column):
-    done = side_by_side(runs[0], column)
+    done = script("side_by_side.py", runs[0], column)
     assert done.returncode == 1 and done.stderr.strip().endswith(f"error: '{column}' is not NAME=RUN,RUN...")

@@ -5,12 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from spot_analysis import fluctuations, free_surface, front, mixing, residence, thickness
-from spot_analysis.bonds import find_bonds
-from spot_analysis.bootstrap import block_sums, bootstrap_error
-from spot_analysis.bounds import Bound
-from spot_analysis.container import Container, Region
-from spot_analysis.snapshot import History
+from spot_analysis.reading.container import Container
+from spot_analysis.report.bounds import Bound
+from spot_analysis.statistics import fluctuations, free_surface, front, mixing, residence, thickness
+from spot_analysis.statistics.bonds import find_bonds
+from spot_analysis.statistics.bootstrap import block_sums, bootstrap_error
+from spot_analysis.statistics.history import History
+from spot_analysis.statistics.region import Region
 
 from synthetic import make_snapshots, measure, plug
 

@@ -5,8 +5,9 @@ import math
 
 import numpy as np
 import pytest
-from spot_analysis import structure
-from spot_analysis.container import Container, Region
+from spot_analysis.reading.container import Container
+from spot_analysis.statistics import neighbours, radial_distribution, structure
+from spot_analysis.statistics.region import Region
 
 from synthetic import fcc
 
@@ -22,8 +23,8 @@ def test_ideal_gas_in_a_slab_has_g_of_one_to_10_d():
     samples = []
     for _ in range(40):
         points = rng.uniform([-25.5, -3.5, 4.5], [25.5, 3.5, 55.5], (1800, 3))
-        pairs = structure.region_pairs(points, REGION, reach=10)
-        samples.append(structure.slab_rdf(structure.rdf_counts(pairs, edges), pairs.grains, 1, REGION, SILO, edges))
+        pairs = neighbours.region_pairs(points, REGION, reach=10)
+        samples.append(radial_distribution.slab_rdf(radial_distribution.rdf_counts(pairs, edges), pairs.grains, 1, REGION, SILO, edges))
     error = np.std(samples, axis=0, ddof=1) / math.sqrt(len(samples))
     deviation = np.mean(samples, axis=0) - 1
     assert error[5:].max() < 0.02
@@ -34,7 +35,7 @@ def test_ideal_gas_in_a_slab_has_g_of_one_to_10_d():
 def test_ideal_partners_follow_the_slab_formula():
     r = np.linspace(0.2, 12, 4001)
     expected = np.where(r <= 7, 4 * math.pi * r**2 * (1 - r / 14), 4 * math.pi * r**2 * 7 / (2 * r))
-    integral = np.diff(structure._ideal_partners(r, 7.0))
+    integral = np.diff(radial_distribution._ideal_partners(r, 7.0))
     np.testing.assert_allclose(integral, np.diff(r) * (expected[1:] + expected[:-1]) / 2, rtol=1e-3)
 
 
@@ -46,15 +47,15 @@ def crystal():
 
 
 def test_fcc_coordination_is_12_but_8_in_the_two_outer_layers(crystal):
-    pairs = structure.region_pairs(crystal, REGION)
+    pairs = neighbours.region_pairs(crystal, REGION)
     assert structure.contacts_per_grain(pairs) == pytest.approx((12 * 14 + 8 * 2) / 16, rel=1e-12)
     assert structure.badness(pairs) == pytest.approx((12 * 14 + 8 * 2) / 16 * 0.001**2, rel=1e-6)
-    assert structure.largest_overlap(crystal) == pytest.approx(0.001)
+    assert neighbours.largest_overlap(crystal) == pytest.approx(0.001)
 
 
 def test_fcc_peaks(crystal):
-    pairs = structure.region_pairs(crystal, REGION)
-    counts = structure.rdf_counts(pairs, np.linspace(0, 2.5, 251))
+    pairs = neighbours.region_pairs(crystal, REGION)
+    counts = radial_distribution.rdf_counts(pairs, np.linspace(0, 2.5, 251))
     peaks = (np.flatnonzero(counts) + 0.5) * 0.01
     np.testing.assert_allclose(peaks, 0.999 * np.sqrt([1, 2, 3, 4, 5, 6]), atol=0.0051)
 

@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from spot_analysis import structure
-from spot_analysis.container import Region
+from spot_analysis.statistics import neighbours, radial_distribution, structure
+from spot_analysis.statistics.region import Region
 
 from synthetic import sequential_packing
 
@@ -22,17 +22,17 @@ def all_pairs(points):
 def test_contacts_badness_and_rdf(seed):
     points = sequential_packing(np.random.default_rng(seed), 700, [-8, -3, 0], [8, 3, 14], 0.85)
     distance, grains = all_pairs(points)
-    pairs = structure.region_pairs(points, REGION)
+    pairs = neighbours.region_pairs(points, REGION)
     touching = distance[distance < 1]
     assert pairs.grains == grains
     assert structure.contacts_per_grain(pairs) == pytest.approx(len(touching) / grains)
     assert structure.badness(pairs) == pytest.approx(((1 - touching)**2).sum() / grains)
-    np.testing.assert_array_equal(structure.rdf_counts(pairs), np.histogram(distance, structure.RDF_EDGES)[0])
+    np.testing.assert_array_equal(radial_distribution.rdf_counts(pairs), np.histogram(distance, radial_distribution.RDF_EDGES)[0])
     everywhere = np.linalg.norm(points[:, None] - points, axis=2)[np.triu_indices(len(points), 1)]
-    assert structure.largest_overlap(points) == pytest.approx(1 - everywhere.min())
+    assert neighbours.largest_overlap(points) == pytest.approx(1 - everywhere.min())
 
 
 def test_few_grains():
     for points in (np.empty((0, 3)), np.array([[0.0, 0, 5]])):
-        assert structure.largest_overlap(points) == 0
-        assert structure.region_pairs(points, REGION).distance.size == 0
+        assert neighbours.largest_overlap(points) == 0
+        assert neighbours.region_pairs(points, REGION).distance.size == 0

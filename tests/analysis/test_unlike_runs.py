@@ -4,19 +4,21 @@ dumps that are none. Whatever cannot be measured is absent, and said; what would
 
 import gzip
 import json
-import subprocess
-import sys
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.stats import qmc
-from spot_analysis import comparison, curves, report, run_statistics
-from spot_analysis.dump import read_frames
-from spot_analysis.errors import AnalysisError
-from spot_analysis.scene import load_scene
+from spot_analysis.base.errors import AnalysisError
+from spot_analysis.reading.dump import read_frames
+from spot_analysis.reading.scene import load_scene
+from spot_analysis.report import comparison, curves, figures
+from spot_analysis.statistics import run_statistics
+from spot_analysis.statistics.interval import choose_interval
+from spot_analysis.statistics.interval_view import IntervalView
+from spot_analysis.statistics.measuring import measure_dumps
 
-from conftest import ANALYSIS
+from conftest import script
 from synthetic import SCENE, frame_text, write_text
 
 SILO = {**SCENE, "orifice_radius": 4.0}
@@ -55,11 +57,7 @@ def write_run(folder, frames, scene=SILO, **keys):
 def measured(source):
     """RunStatistics and the warnings."""
     warnings = []
-    return run_statistics.measure(source, load_scene(source), warn=warnings.append), warnings
-
-
-def script(name, *arguments):
-    return subprocess.run([sys.executable, "-B", str(ANALYSIS / name), *map(str, arguments)], capture_output=True, text=True)
+    return measure_dumps(source, load_scene(source), warn=warnings.append), warnings
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +95,7 @@ def test_snapshots_without_grains_are_measured(full, tmp_path, case):
     # as in the full run wherever a snapshot and the one before it have grains
     same = run.grains > 0
     np.testing.assert_array_equal(run.above[same], dem.above[same][:, :run.above.shape[1]])
-    views = {name: comparison.IntervalView(one, np.arange(len(TIMES)), comparison.choose_interval(TIMES))
+    views = {name: IntervalView(one, np.arange(len(TIMES)), choose_interval(TIMES))
              for name, one in (("DEM", dem), ("spot", run))}
     rows = {row.name: row for row in comparison.compare(*views.values())}
     for row in rows.values():
@@ -107,7 +105,7 @@ def test_snapshots_without_grains_are_measured(full, tmp_path, case):
     curves.as_lists(views)
     if case in ("later half", "all"):
         assert rows["surface_height_axis"].spot is None
-        assert report.draw_pictures(tmp_path, views, lambda text: None)
+        assert figures.draw_pictures(tmp_path, views, lambda text: None)
     if case == "all":
         assert rows["packing_fraction"].left_out == rows["largest_overlap"].left_out == "spot: there are no grains"
         assert rows["crystal_share"].left_out == "spot: no snapshot fills z = 15 d to 50 d"

@@ -5,13 +5,14 @@ import math
 
 import numpy as np
 import pytest
-from spot_analysis import fits, particle_diffusion, profile_width, stagnation, velocity_correlation
-from spot_analysis.bootstrap import block_sums, bootstrap_error
-from spot_analysis.calibration_diffusion import fit_diffusion
-from spot_analysis.calibration_estimate import CalibrationError, estimate
-from spot_analysis.container import Container, Region
-from spot_analysis.flow import velocity_profile
-from spot_analysis.mean_flow import SIZE, UPPER, Step, about_mean_flow, core, inclination_terms, triangles
+from spot_analysis.calibration.diffusion import fit_diffusion
+from spot_analysis.calibration.estimate import CalibrationError, estimate
+from spot_analysis.reading.container import Container
+from spot_analysis.statistics import fits, particle_diffusion, profile_width, stagnation, velocity_correlation
+from spot_analysis.statistics.bootstrap import block_sums, bootstrap_error
+from spot_analysis.statistics.flow import velocity_profile
+from spot_analysis.statistics.mean_flow import SIZE, UPPER, Step, about_mean_flow, core, inclination_terms, triangles
+from spot_analysis.statistics.region import Region
 
 from synthetic import make_snapshots, measure
 

@@ -6,8 +6,9 @@ import math
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, Voronoi
-from spot_analysis import voronoi
-from spot_analysis.container import Container, Region
+from spot_analysis.reading.container import Container
+from spot_analysis.statistics import voronoi, voronoi_cells
+from spot_analysis.statistics.region import Region
 
 from synthetic import fcc, hcp, measure, middle_of, sequential_packing
 
@@ -23,7 +24,7 @@ def test_lattices(points, volume):
     """All their neighbours lie on spheres, so many tetrahedra are flat."""
     inner = (np.abs(points - (points.max(axis=0) + points.min(axis=0)) / 2) < np.ptp(points, axis=0) / 2 - 1.6).all(axis=1)
     assert inner.sum() > 20
-    np.testing.assert_allclose(voronoi.cell_volumes(points)[inner], volume, rtol=1e-9)
+    np.testing.assert_allclose(voronoi_cells.cell_volumes(points)[inner], volume, rtol=1e-9)
 
 
 def box_of_grains(seed=0):
@@ -33,8 +34,8 @@ def box_of_grains(seed=0):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_cells_equal_those_of_scipy(seed):
-    points = voronoi.with_mirror_images(box_of_grains(seed), NO_HOLE)
-    volumes = voronoi.cell_volumes(points)
+    points = voronoi_cells.with_mirror_images(box_of_grains(seed), NO_HOLE)
+    volumes = voronoi_cells.cell_volumes(points)
     diagram = Voronoi(points)
     compared = 0
     for grain in np.flatnonzero((points[:480, 2] < 5))[:150]:
@@ -49,18 +50,18 @@ def test_cells_fill_the_box():
     """Grains and their images in a lid close all cells, which then fill 10 d x 8 d x 8 d."""
     points = box_of_grains()
     lid = points * [1, 1, -1] + [0, 0, 16]
-    closed = voronoi.with_mirror_images(np.vstack([points, lid]), NO_HOLE, reach=4)
-    volumes = voronoi.cell_volumes(closed)[:480]
+    closed = voronoi_cells.with_mirror_images(np.vstack([points, lid]), NO_HOLE, reach=4)
+    volumes = voronoi_cells.cell_volumes(closed)[:480]
     assert volumes.min() > 0.3 and volumes.sum() == pytest.approx(640, rel=1e-9)
-    inside = voronoi.cells_in_container(np.vstack([points, lid]), NO_HOLE)[:480]
+    inside = voronoi_cells.cells_in_container(np.vstack([points, lid]), NO_HOLE)[:480]
     small = volumes < 1.5
     np.testing.assert_allclose(inside[small], volumes[small], rtol=1e-9)
-    assert np.all(np.isinf(inside[volumes > voronoi.OPEN]))
+    assert np.all(np.isinf(inside[volumes > voronoi_cells.OPEN]))
 
 
 def test_mirror_images_keep_out_of_the_orifice():
     points = np.array([[0.0, 0, 0.5], [10.0, 0, 0.5], [24.5, 3.5, 20]])
-    images = voronoi.with_mirror_images(points, Container(25, 4, 4))[3:]
+    images = voronoi_cells.with_mirror_images(points, Container(25, 4, 4))[3:]
     assert {tuple(image) for image in images} == {(10.0, 0.0, -0.5), (25.5, 3.5, 20.0), (24.5, 4.5, 20.0),
                                                   (25.5, 4.5, 20.0)}
 

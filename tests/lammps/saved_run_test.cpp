@@ -136,17 +136,17 @@ TEST(SavedRun, PartsOfTheWrongSizeAreRefused) {
   EXPECT_THAT(error_of(bytes), HasSubstr("parts are longer than all"));
 }
 
-/// The beginning of a file of version 4, which had no checksum of its header, and of one to come.
+/// The beginning of files of versions before and after, of which those up to 4 had no checksum of their header.
 TEST(SavedRun, OtherVersionsAreRefusedWithAdvice) {
-  for (const std::int32_t version : {1, 4, 6, 1000}) {
+  for (const std::int32_t version : {1, 4, 5, 7, 1000}) {
     Bytes bytes = {'s', 'p', 'o', 't', ' ', 'r', 'u', 'n'};
     spot::append(bytes, version);
-    if (version > 5)
+    if (version >= 5)
       spot::append(bytes, std::int64_t{~version});
     else
       spot::append(bytes, std::uint64_t{12345});
     EXPECT_THAT(error_of(bytes), AllOf(HasSubstr("of format " + std::to_string(version) + " of fix spot"),
-                                       HasSubstr("knows 5 only"), HasSubstr("give the fix another ID")));
+                                       HasSubstr("knows 6 only"), HasSubstr("give the fix another ID")));
   }
 }
 

@@ -118,7 +118,7 @@ TEST(SpotCommand, AccuracyDecidesWhatIsLeftOpen) {
       {"fast", Accuracy::fast}, {"normal", Accuracy::normal}, {"exact", Accuracy::exact}};
   for (const auto& [word, accuracy] : words) {
     const SpotCommand c = resolved("accuracy " + word, 2.0);
-    const spot::RelaxationParameters chosen = SpotCommand::relaxation_of(accuracy, spot::InfluenceProfile::parabolic);
+    const spot::RelaxationParameters chosen = SpotCommand::relaxation_of(accuracy, *spot::InfluenceProfile::parabolic);
     EXPECT_EQ(*c.time_ordered, accuracy == Accuracy::exact) << word;
     EXPECT_EQ(c.relaxation.tolerance, chosen.tolerance) << word;
     EXPECT_EQ(c.relaxation.alpha, chosen.alpha) << word;
@@ -391,7 +391,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
   c.resolve(d);
   const std::map<std::string, std::string> defaults = {
       {"radius", in(c.spots.radius / d, " d")},
-      {"profile", c.spots.profile == spot::InfluenceProfile::parabolic ? "parabolic" : "uniform"},
+      {"profile", c.spots.profile->name()},
       {"influence", in(c.spots.influence, "")},
       {"diffusion", in(c.spots.diffusion_length() / d, " d")},
       {"seed", std::to_string(c.spots.seed)},

@@ -55,7 +55,7 @@ Bytes bytes_of(const std::map<std::int64_t, Spot>& spots) {
     spot::append(bytes, id);
     spot::append(bytes, spot.steps);
     spot::append(bytes, spot.position);
-    for (const double number : {spot.next_step, spot.turn, spot.chance, spot.pace}) spot::append(bytes, number);
+    for (const double number : {spot.next_step, spot.direction, spot.chance, spot.relative_speed}) spot::append(bytes, number);
   }
   return bytes;
 }
@@ -63,7 +63,7 @@ Bytes bytes_of(const std::map<std::int64_t, Spot>& spots) {
 Bytes bytes_of(const Counters& counters, const std::map<std::int64_t, std::int64_t>& received) {
   Bytes bytes;
   for (const std::int64_t count :
-       {counters.moves, counters.shares_moved, counters.sweeps, counters.grains_swept, counters.drained})
+       {counters.moves, counters.volume_moved, counters.sweeps, counters.grains_swept, counters.drained})
     spot::append(bytes, count);
   for (const auto& [id, moves] : received) {
     spot::append(bytes, id);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/geometry/container.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +9,10 @@
 #include <vector>
 
 #include "scenes.hpp"
+#include "spot/geometry/base_plate.hpp"
+#include "spot/geometry/cylinder_wall.hpp"
+#include "spot/geometry/plane_wall.hpp"
+#include "spot/geometry/silos.hpp"
 
 namespace {
 

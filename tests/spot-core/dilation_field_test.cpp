@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scenes.hpp"
+#include "spot/walk/calibration.hpp"
 
 namespace {
 
@@ -112,7 +113,7 @@ TEST(DilationFieldAnalytic, OneSpotDilatesByItsVolumeInAll) {
   }
 }
 
-TEST(DilationFieldUnit, PaceIsTheSquareOfTheDilationWithinBounds) {
+TEST(DilationFieldUnit, RelativeSpeedIsTheSquareOfTheDilationWithinBounds) {
   SpotParameters spots = dilating_spots();
   const auto silo = scenes::small_silo(6.0, 6.0);
   const double spacing = 12.0 / 20;
@@ -122,8 +123,10 @@ TEST(DilationFieldUnit, PaceIsTheSquareOfTheDilationWithinBounds) {
     spots.dilation = share(spots, spacing) / ratio;
     DilationField field(spots, *silo, 1.0);
     field.count(places, alone);
-    const double expected = ratio < 0.3 ? DilationField::slowest : ratio > 2.0 ? DilationField::fastest : ratio * ratio;
-    EXPECT_NEAR(field.pace({0.0, 0.0, 15.0}) / expected, 1.0, 0.05) << ratio;
+    const double expected = ratio < 0.3   ? spot::calibration::slowest_relative_speed
+                            : ratio > 2.0 ? spot::calibration::fastest_relative_speed
+                                          : ratio * ratio;
+    EXPECT_NEAR(field.relative_speed({0.0, 0.0, 15.0}) / expected, 1.0, 0.05) << ratio;
   }
 }
 
@@ -131,10 +134,10 @@ TEST(DilationFieldUnit, NoSpotsAndNoRoom) {
   const auto silo = scenes::small_silo(6.0, 6.0);
   Alone alone;
   DilationField field(dilating_spots(), *silo, 1.0);
-  EXPECT_EQ(field.pace({0, 0, 15}), DilationField::slowest);
+  EXPECT_EQ(field.relative_speed({0, 0, 15}), spot::calibration::slowest_relative_speed);
   field.count({}, alone);
   EXPECT_EQ(field.at({0, 0, 15}), 0.0);
-  EXPECT_EQ(field.pace({0, 0, -20}), DilationField::fastest);  // where no grain can be
+  EXPECT_EQ(field.relative_speed({0, 0, -20}), spot::calibration::fastest_relative_speed);  // where no grain can be
 }
 
 TEST(DilationFieldUnit, OtherWallsLeaveOtherVolumes) {

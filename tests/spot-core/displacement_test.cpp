@@ -26,7 +26,7 @@ Packing listed(const std::vector<Grain>& grains) {
 TEST(DisplacementUnit, MovesGrainsWithinTheRadiusAgainstTheStep) {
   Packing packing = listed(row);
   const Move move{0.0, 0, {0.0, 0.0, 0.0}, {0.68, 0.0, 0.1}};
-  EXPECT_EQ(spot::displace(packing, scenes::all_movable(packing), move, {2.6, 2.5e-3}), 2 * spot::whole_share);
+  EXPECT_EQ(spot::displace(packing, scenes::all_movable(packing), move, {2.6, 2.5e-3}), 2 * spot::grain_volume);
   const auto grains = packing.grains();
   const Vector3 shift(-2.5e-3 * 0.68, 0.0, -2.5e-3 * 0.1);
   for (const std::size_t i : {0, 1})
@@ -39,7 +39,7 @@ TEST(DisplacementUnit, MovesGrainsWithinTheRadiusAgainstTheStep) {
 TEST(DisplacementUnit, InfluenceIsCentredOnTheMiddle) {
   Packing packing = listed({{1, {2.5, 0.0, 0.0}}, {2, {-2.5, 0.0, 0.0}}});
   const Move move{0.0, 0, {0.34, 0.0, 0.0}, {0.68, 0.0, 0.0}};
-  EXPECT_EQ(spot::displace(packing, scenes::all_movable(packing), move, {2.6, 2.5e-3}), spot::whole_share);
+  EXPECT_EQ(spot::displace(packing, scenes::all_movable(packing), move, {2.6, 2.5e-3}), spot::grain_volume);
   EXPECT_LT(packing.grains()[0].position.x(), 2.4999);
   EXPECT_EQ(packing.grains()[1].position.x(), -2.5);
 }
@@ -47,7 +47,7 @@ TEST(DisplacementUnit, InfluenceIsCentredOnTheMiddle) {
 TEST(DisplacementUnit, TouchesOnlyTheGrainsItIsGiven) {
   Packing packing = listed(row);
   const Move move{0.0, 0, {0.0, 0.0, 0.0}, {0.68, 0.0, 0.1}};
-  EXPECT_EQ(spot::displace(packing, {scenes::index_of(packing, 1)}, move, {2.6, 2.5e-3}), spot::whole_share);
+  EXPECT_EQ(spot::displace(packing, {scenes::index_of(packing, 1)}, move, {2.6, 2.5e-3}), spot::grain_volume);
   EXPECT_EQ(packing.grains()[1].position.x(), 2.5);
   EXPECT_EQ(spot::displace(packing, {}, move, {2.6, 2.5e-3}), 0);
 }
@@ -73,7 +73,7 @@ TEST(DisplacementUnit, WeightMultipliesTheInfluence) {
   spot::displace(packing, scenes::all_movable(packing), move, {2.6, 2.5e-3});
   EXPECT_NEAR(packing.grains()[0].position.x(), -1.5 * 2.5e-3 * 0.68, 2.0 * packing.quantum().length());
   move.weight = 0.0;
-  EXPECT_EQ(spot::displace(packing, scenes::all_movable(packing), move, {2.6, 2.5e-3}), 2 * spot::whole_share);
+  EXPECT_EQ(spot::displace(packing, scenes::all_movable(packing), move, {2.6, 2.5e-3}), 2 * spot::grain_volume);
   EXPECT_NEAR(packing.grains()[0].position.x(), -1.5 * 2.5e-3 * 0.68, 2.0 * packing.quantum().length());
 }
 
@@ -89,30 +89,17 @@ TEST(FixedVolumeAnalytic, WeightTimesGrainsIsTheVolume) {
   spot::SpotParameters spots = scenes::paper_spots();
   spots.fixed_volume = 77.0;
   for (const int grains : {20, 40, 77, 100, 300})
-    EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains * spot::whole_share) * grains, 77.0, 1e-6) << grains;
+    EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains * spot::grain_volume) * grains, 77.0, 1e-6) << grains;
   // At the surface, where a spot has less to carry its volume, grains are not thrown about.
   for (const int grains : {0, 1, 5, 19})
-    EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains * spot::whole_share), 3.85, 1e-6);
+    EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains * spot::grain_volume), 3.85, 1e-6);
 }
 
-/// The part of the spot above the outlet, by slices of it (2010, section 3.3): of a uniform one they have the volume of
-/// discs, pi (1 - z^2), and of a parabolic one the integral of 1 - z^2 - s^2 over them, pi (1 - z^2)^2 / 2.
 TEST(FixedVolumeAnalytic, VolumeIsThatOfThePartAboveTheOutlet) {
-  for (const auto profile : {spot::InfluenceProfile::uniform, spot::InfluenceProfile::parabolic}) {
-    const double power = profile == spot::InfluenceProfile::uniform ? 1.0 : 2.0, dz = 1e-4;
-    for (double height = -1.25; height <= 1.25; height += 0.125) {
-      double above = 0.0, whole = 0.0;
-      for (double z = -1.0 + 0.5 * dz; z < 1.0; z += dz) {
-        whole += std::pow(1.0 - z * z, power);
-        if (height + z > 0.0) above += std::pow(1.0 - z * z, power);
-      }
-      EXPECT_NEAR(spot::part_above_outlet(profile, height), above / whole, 1e-4) << height;
-    }
-  }
   spot::SpotParameters spots = scenes::paper_spots();
   spots.fixed_volume = 77.0;
   EXPECT_NEAR(spot::fixed_volume_weight(spots, -2.6, 0), 0.0, 1e-6) << "all below";
-  EXPECT_NEAR(spot::fixed_volume_weight(spots, 0.0, 40 * spot::whole_share), 77.0 * 0.5 / 40.0, 1e-6);
+  EXPECT_NEAR(spot::fixed_volume_weight(spots, 0.0, 40 * spot::grain_volume), 77.0 * 0.5 / 40.0, 1e-6);
 }
 
 /// What a parabolic spot hands out falls with the square of the distance, to nothing at its radius.
@@ -125,35 +112,12 @@ TEST(DisplacementAnalytic, SharesOfAParabolicSpot) {
     const double share = std::max(0.0, 1.0 - part * part);
     Packing packing = listed({{1, {0, part * radius, 0}}});
     const auto all = scenes::all_movable(packing);
-    EXPECT_NEAR(spot::enclosed_shares(packing, all, move, spots), share * spot::whole_share, 1.0) << part;
-    EXPECT_NEAR(spot::displace(packing, all, move, spots), share * spot::whole_share, 1.0) << part;
+    EXPECT_NEAR(spot::enclosed_volume(packing, all, move, spots), share * spot::grain_volume, 1.0) << part;
+    EXPECT_NEAR(spot::displace(packing, all, move, spots), share * spot::grain_volume, 1.0) << part;
     const Vector3 at = packing.grains()[0].position;
     EXPECT_NEAR(at.x(), -share * 2.5e-3 * 0.7, 1e-9) << part;
     EXPECT_NEAR(at.z(), -share * 2.5e-3 * 0.1, 1e-9) << part;
   }
-}
-
-/// Its volume is that of a smaller uniform one.
-TEST(SpotParametersAnalytic, ParabolicAndUniformSpotsOfTheSameVolume) {
-  spot::SpotParameters uniform{2.6, 2.5e-3}, parabolic{2.6 * std::cbrt(2.5), 2.5e-3};
-  parabolic.profile = spot::InfluenceProfile::parabolic;
-  EXPECT_NEAR(parabolic.spot_volume(0.6), uniform.spot_volume(0.6), 1e-12);
-  EXPECT_NEAR(parabolic.equivalent_radius(), 2.6, 1e-12);
-  EXPECT_EQ(uniform.equivalent_radius(), 2.6);
-  // Mean square difference of the shares of two grains in touch, anywhere within the spot, by sums over a grid.
-  double sum = 0.0;
-  int n = 0;
-  const double r = parabolic.radius, d = 0.01, h = 0.1;
-  for (double x = -r; x < r; x += h)
-    for (double y = -r; y < r; y += h)
-      for (double z = -r; z < r; z += h) {
-        if (x * x + y * y + z * z > r * r) continue;
-        for (const spot::Vector3& along : {spot::Vector3(d, 0, 0), spot::Vector3(0, d, 0), spot::Vector3(0, 0, d)}) {
-          sum += std::pow(((spot::Vector3(x, y, z) + along).squaredNorm() - (x * x + y * y + z * z)) / (r * r), 2);
-          ++n;
-        }
-      }
-  EXPECT_NEAR(parabolic.mean_square_difference(d) / (sum / n), 1.0, 0.02);
 }
 
 /// Influence does not couple grains while it is constant, so grains inside all spheres may see moves in any order.

@@ -30,7 +30,7 @@ using spot::RelaxationParameters;
 using spot::RelaxationSchedule;
 using spot::RelaxationStrength;
 using spot::SpotParameters;
-using spot::SpotPopulation;
+using spot::Spots;
 using spot::TimeOrderedDrainage;
 using spot::Vector3;
 using testing::AllOf;
@@ -71,10 +71,10 @@ class PlainDrainage {
   }
 
   void carry_out_moves(int number) {
-    for (int k = 0; k < number; ++k) carry_out(*population_.next_move(1e9, *container_));
+    for (int k = 0; k < number; ++k) carry_out(*population_.next_step(1e9, *container_));
   }
   void carry_out_until(double time) {
-    while (const auto move = population_.next_move(time, *container_)) carry_out(*move);
+    while (const auto move = population_.next_step(time, *container_)) carry_out(*move);
   }
   double time() const { return time_; }
   int moves() const { return moves_; }
@@ -92,7 +92,7 @@ class PlainDrainage {
     int enclosed = 0;
     for (const Grain& grain : grains_)
       enclosed += !grain.held && squared(grain.position - move.middle) <= spots_.radius * spots_.radius;
-    return spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed * spot::whole_share);
+    return spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed * spot::grain_volume);
   }
 
   bool relaxes_around(const Move& move) const {
@@ -133,7 +133,7 @@ class PlainDrainage {
       ++moved;
     }
     if (moved == 0) {
-      if (move.middle.z() > container_->orifice().centre.z() + spots_.radius) population_.remove_last_moved();
+      if (move.middle.z() > container_->orifice().centre.z() + spots_.radius) population_.remove(move.spot);
       return;
     }
     ++effective_moves_;
@@ -175,7 +175,7 @@ class PlainDrainage {
   RelaxationParameters relaxation_;
   double outlet_;
   std::shared_ptr<const Container> container_;
-  SpotPopulation population_;
+  Spots population_;
   double q_;
   std::vector<Grain> grains_, drained_;
   double time_ = 0.0;
@@ -311,7 +311,7 @@ void expect_identical(const Outcome& a, const Outcome& b) {
   scenes::expect_identical(a.left, b.left);
   scenes::expect_identical(a.drained, b.drained);
   EXPECT_EQ(a.counters.moves, b.counters.moves);
-  EXPECT_EQ(a.counters.shares_moved, b.counters.shares_moved);
+  EXPECT_EQ(a.counters.volume_moved, b.counters.volume_moved);
   EXPECT_EQ(a.counters.sweeps, b.counters.sweeps);
 }
 
@@ -463,13 +463,13 @@ TEST(DrainageUnit, MovesThatGrainsReceiveAreCounted) {
   drainage.advance_to(0.5);
   EXPECT_TRUE(drainage.take_moves_received().empty()) << "nobody has asked for it";
   const std::vector<Grain> before = drainage.grains();
-  const std::int64_t moved_before = drainage.counters().shares_moved;
+  const std::int64_t moved_before = drainage.counters().volume_moved;
   drainage.count_moves_received();
   drainage.advance_to(2.0);
   spot::MovesReceived received = drainage.take_moves_received();
   std::int64_t moved = 0;
   for (const auto& [id, moves] : received) moved += moves;
-  EXPECT_EQ(moved, (drainage.counters().shares_moved - moved_before) / spot::whole_share);
+  EXPECT_EQ(moved, (drainage.counters().volume_moved - moved_before) / spot::grain_volume);
   EXPECT_GT(drainage.counters().drained, 0);
   // Without relaxation every move takes a grain down by as much.
   const double down = drainage.quantum().round(strong_spots().influence * strong_spots().step_height);
@@ -489,7 +489,7 @@ TEST(DrainageUnit, CountersAddUp) {
   const spot::Counters& counters = drainage.counters();
   EXPECT_GT(counters.moves, 1000);
   EXPECT_LE(counters.sweeps, counters.moves / 5);
-  EXPECT_DOUBLE_EQ(counters.grains_per_move(), static_cast<double>(counters.shares_moved) / spot::whole_share /
+  EXPECT_DOUBLE_EQ(counters.grains_per_move(), static_cast<double>(counters.volume_moved) / spot::grain_volume /
                                                    static_cast<double>(counters.moves));
 }
 

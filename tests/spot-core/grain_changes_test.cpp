@@ -115,8 +115,7 @@ Places drain(int ranks, double restart) {
       drainage->change_grains(part_of(event, rank, ranks));
       if (restart > event.time && restart < event.time + 0.5) {
         drainage->advance_to(restart);
-        std::vector<Bytes> parts =
-            communicator->exchange(std::vector<Bytes>(static_cast<std::size_t>(ranks), drainage->save()));
+        std::vector<Bytes> parts = communicator->share_with_all(drainage->save());
         drainage = windowed(parts, communicator);
       }
     }

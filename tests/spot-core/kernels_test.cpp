@@ -81,14 +81,14 @@ TEST(KernelsInvariance, DisplacementIsTheSameInEveryBuild) {
     const auto start = points_in_box(400, 6.0, seed);
     const Point middle = point_at({3, 3, 3});
     const spot::Reach reach = seed % 2 == 0 ? uniform : parabolic;
-    const int shares = base.enclosed_shares(start.data(), start.size(), middle, reach);
-    EXPECT_GT(shares, 10 * spot::whole_share);
+    const int shares = base.enclosed_volume(start.data(), start.size(), middle, reach);
+    EXPECT_GT(shares, 10 * spot::grain_volume);
     auto plain = start;
     base.displace(plain.data(), plain.size(), middle, reach, by);
     for (const Kernels* build : spot::kernels::runnable()) {
       auto points = start;
-      EXPECT_EQ(build->enclosed_shares(points.data(), points.size(), middle, reach), shares);
-      EXPECT_EQ(build->enclosed_shares(points.data(), 0, middle, reach), 0);
+      EXPECT_EQ(build->enclosed_volume(points.data(), points.size(), middle, reach), shares);
+      EXPECT_EQ(build->enclosed_volume(points.data(), 0, middle, reach), 0);
       build->displace(points.data(), 0, middle, reach, by);
       expect_same(points, start, *build);
       build->displace(points.data(), points.size(), middle, reach, by);
@@ -127,7 +127,7 @@ TEST(KernelsAnalytic, ParabolicSharesFallWithTheSquareOfTheDistance) {
     EXPECT_NEAR(static_cast<double>(points[i].z) - start[i].z, -1e6 * share, 1.5) << i;
     sum += share;
   }
-  EXPECT_NEAR(base.enclosed_shares(start.data(), start.size(), middle, parabolic), sum * spot::whole_share,
+  EXPECT_NEAR(base.enclosed_volume(start.data(), start.size(), middle, parabolic), sum * spot::grain_volume,
               0.5 * sum + 200.0);
 }
 
@@ -138,7 +138,7 @@ TEST(KernelsUnit, DisplacementLeavesHeldAndEmptyPlacesAlone) {
     std::vector<Point> points(8, {0, 0, 0, Point::held});
     points[3] = points[6] = nobody;
     const auto before = points;
-    EXPECT_EQ(build->enclosed_shares(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}), 0);
+    EXPECT_EQ(build->enclosed_volume(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}), 0);
     build->displace(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}, {1, 1, 1, 0});
     expect_same(points, before, *build);
   }
@@ -147,7 +147,7 @@ TEST(KernelsUnit, DisplacementLeavesHeldAndEmptyPlacesAlone) {
 /// Random lists, and who has them.
 struct Listed {
   std::vector<Point> points;
-  std::vector<std::uint32_t> neighbours, grains;
+  std::vector<std::uint32_t> neighbours, blocks, grains;
   std::vector<std::uint8_t> sizes;
   std::uint32_t capacity;
 
@@ -162,12 +162,13 @@ struct Listed {
         const auto other = static_cast<std::uint32_t>(draws.below(points.size()));
         if (other != i && points[other].state != Point::empty) neighbours[i * capacity + n++] = other;
       }
+      blocks.push_back(i * capacity / spot::kernels::lanes);
       sizes.push_back(static_cast<std::uint8_t>(n));
       if (points[i].state == Point::free) grains.push_back(i);
     }
   }
 
-  spot::kernels::Lists lists() const { return {neighbours.data(), sizes.data(), capacity}; }
+  spot::kernels::Lists lists() const { return {neighbours.data(), blocks.data(), sizes.data()}; }
 
   /// Half of the free grains are due.
   std::vector<Point> pushes(const Kernels& build) const {
@@ -205,6 +206,7 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
     both[0] = 1;
     return both;
   }();
+  const std::vector<std::uint32_t> blocks = {0, 1};
   const std::vector<std::uint8_t> sizes = {1, 1};
   const std::vector<std::uint32_t> grains = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0};  // and those fetched ahead
   for (int k = 0; k < 1000; ++k) {
@@ -213,7 +215,7 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
     along.normalize();
     std::vector<Point> points = {point_at({1, 1, 1}), point_at(spot::Vector3(1, 1, 1) + (1.0 - overlap) * along)};
     std::vector<Point> pushes(2);
-    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), sizes.data(), 16},
+    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), blocks.data(), sizes.data()},
                              {per_square, 0.2f, 0.4f}, pushes.data());
     const spot::Vector3 push(pushes[0].x, pushes[0].y, pushes[0].z);
     // To 1e-4 of itself, and what single precision leaves of 1 - r^2/d^2, and one quantum along each axis.
@@ -225,7 +227,7 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
     EXPECT_EQ(pushes[0].z, -pushes[1].z);
     points[1].state = Point::due;
     std::vector<Point> half(2);
-    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), sizes.data(), 16},
+    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), blocks.data(), sizes.data()},
                              {per_square, 0.2f, 0.4f}, half.data());
     EXPECT_NEAR(half[0].x, 0.5 * pushes[0].x, 1.0) << "the pair's share";
     expect_same({half[1]}, {pushes[1]}, base);

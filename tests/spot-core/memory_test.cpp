@@ -29,6 +29,12 @@ void release(void* memory) {
 }  // namespace
 
 void* operator new(std::size_t n) { return noted(std::malloc(n)); }
+// The standard library asks for memory in this way, too, and gives it back by delete.
+void* operator new(std::size_t n, const std::nothrow_t&) noexcept {
+  void* memory = std::malloc(n);
+  if (memory) allocated += malloc_usable_size(memory);
+  return memory;
+}
 void* operator new(std::size_t n, std::align_val_t alignment) {
   void* memory = nullptr;
   return noted(posix_memalign(&memory, static_cast<std::size_t>(alignment), n) == 0 ? memory : nullptr);

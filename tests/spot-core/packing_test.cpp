@@ -205,7 +205,7 @@ TEST(PackingBruteForce, DisplacesExactlyTheGrainsInTheSphere) {
     }
     packing.refresh(*container);
     packing.find_movable(move.middle, 3.6, near);
-    EXPECT_EQ(spot::displace(packing, near, move, {2.6, 2.5e-3}), inside * spot::whole_share);
+    EXPECT_EQ(spot::displace(packing, near, move, {2.6, 2.5e-3}), inside * spot::grain_volume);
     scenes::expect_identical(packing.grains(), expected);
   }
 }

@@ -38,7 +38,7 @@ class PlainPacking {
   int shares(const spot::Move& move, const spot::SpotParameters& spots) const {
     int sum = 0;
     for (const Body& body : bodies_)
-      sum += static_cast<int>(share(body, move, spots) * static_cast<float>(spot::whole_share));
+      sum += static_cast<int>(share(body, move, spots) * static_cast<float>(spot::grain_volume));
     return sum;
   }
 

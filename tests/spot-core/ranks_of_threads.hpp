@@ -92,7 +92,7 @@ class ThreadRank : public spot::Communicator {
     spot::Bytes bytes;
     spot::append(bytes, values);
     std::vector<T> all;
-    for (const auto& other : exchange(std::vector<spot::Bytes>(static_cast<std::size_t>(size_), bytes))) {
+    for (const auto& other : share_with_all(bytes)) {
       const auto theirs = spot::ByteReader(other).take_all<T>();
       if (all.empty())
         all = theirs;

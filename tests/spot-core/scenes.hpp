@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "spot/base/errors.hpp"
-#include "spot/geometry/container.hpp"
+#include "spot/geometry/silos.hpp"
 #include "spot/packing/packing.hpp"
 #include "spot/walk/parameters.hpp"
 

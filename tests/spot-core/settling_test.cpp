@@ -8,7 +8,7 @@
 
 #include "ranks_of_threads.hpp"
 #include "scenes.hpp"
-#include "spot/packing/tiled_packing.hpp"
+#include "spot/relaxation/settling.hpp"
 
 namespace {
 
@@ -33,7 +33,7 @@ std::map<std::int64_t, Vector3> places(const TiledPacking& packing) {
 
 std::size_t settle(TiledPacking& packing, bool everybody = true, int threads = 1) {
   Workers workers(threads);
-  return packing.settle(everybody, seed, in_contact, *silo(), workers);
+  return spot::Settling(packing, seed, in_contact, *silo(), workers).run(everybody);
 }
 
 /// So many grains, no two of them in touch, from this height on.

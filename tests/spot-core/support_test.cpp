@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "spot/packing/support.hpp"
+#include "spot/relaxation/support.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The tiled packing against loops over all grains and all pairs.
 #include "spot/packing/tiled_packing.hpp"
+#include "spot/relaxation/cell_relaxation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@
 
 #include "plain_packing.hpp"
 #include "scenes.hpp"
+#include "spot/geometry/plane_wall.hpp"
 
 namespace {
 
@@ -27,7 +29,7 @@ using spot::SpotParameters;
 using spot::TiledPacking;
 using spot::Vector3;
 using spot::WalledContainer;
-using spot::whole_share;
+using spot::grain_volume;
 using spot::Workers;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -63,7 +65,7 @@ struct Treatment {
   std::function<std::shared_ptr<const spot::Container>()> container = [] { return scenes::small_silo(6.0, 4.0); };
   std::vector<Grain> grains = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 8.0}, 0.01, 7);
   RelaxationParameters relaxation = {};
-  spot::InfluenceProfile profile = spot::InfluenceProfile::uniform;
+  const spot::InfluenceProfile* profile = spot::InfluenceProfile::uniform;
   Vector3 low{-4, -3, 0}, high{4, 3, 7};  // where moves are
   double largest_step = 0.05;             // of a grain along an axis
   bool one_way = false;                   // along x
@@ -237,7 +239,7 @@ TEST(TiledPackingUnit, MoreAxisPlanesThanBitsAreStillWalls) {
   ASSERT_EQ(steps.axis_planes().size(), 9u);
   TiledPacking packing(1.0, 100.0, 0.0, {{1, {0.25, 0, 0}}}, steps);
   Workers workers(1);
-  packing.sweep({}, 0, 1.0, steps, workers);
+  spot::CellRelaxation(packing, {}).sweep(0, 1.0, steps, workers);
   EXPECT_NEAR(sorted_grains(packing)[0].position.x(), 0.25 + 0.8 * 0.25, 1e-6);
 }
 
@@ -268,13 +270,13 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
     ASSERT_EQ(moved.size(), moves.size());
     for (std::size_t m = 0; m < moves.size(); ++m) {
       ASSERT_EQ(moved[m], plain.shares(moves[m], spots)) << "call " << call;
-      total += moved[m] / whole_share;
+      total += moved[m] / grain_volume;
     }
     for (const Move& move : moves) plain.displace(move, spots);
     for (int sweep = call % 3; sweep > 0; --sweep) {
       std::size_t free = 0;
       for (const Grain& grain : t.grains) free += grain.held ? 0 : 1;
-      ASSERT_EQ(tiled.sweep(t.relaxation, 0, 1.0, *container, workers), free);
+      ASSERT_EQ(spot::CellRelaxation(tiled, t.relaxation).sweep(0, 1.0, *container, workers), free);
       plain.sweep(t.relaxation);
     }
     if (call % 4 == 3 || call + 1 == t.calls) {
@@ -322,7 +324,7 @@ TEST(TiledPackingBruteForce, ASweepOfSomeCellsEqualsThePlainOne) {
     PlainPacking plain(1.0, 100.0, -1.0, before, *silo), all = plain;
     all.sweep(relaxation);
     const auto pushed_in_all = all.grains();
-    const std::size_t swept = tiled.sweep(relaxation, 1, 1.0, *silo, workers);
+    const std::size_t swept = spot::CellRelaxation(tiled, relaxation).sweep(1, 1.0, *silo, workers);
     const auto after = sorted_grains(tiled);
     // Grains that are due and overlap nobody stay where they are, too, but then they push nobody either.
     std::set<std::int64_t> pushed;
@@ -341,7 +343,7 @@ TEST(TiledPackingBruteForce, ASweepOfSomeCellsEqualsThePlainOne) {
     pushed_in_rounds += pushed.size();
     EXPECT_LE(pushed.size(), swept);
     EXPECT_LT(swept, tiled.size());
-    while (tiled.sweep(relaxation, 1, 1.0, *silo, workers) > 0) {
+    while (spot::CellRelaxation(tiled, relaxation).sweep(1, 1.0, *silo, workers) > 0) {
     }
   }
   EXPECT_GT(pushed_in_rounds, 100u);
@@ -367,7 +369,7 @@ TEST(TiledPackingInvariance, ThreadsChangeNothing) {
       }
       moved = carry_out(packing, moves, {2.6, 5e-3}, *silo, workers);
       for (const int n : moved) counts.back().push_back(static_cast<std::size_t>(n));
-      counts.back().push_back(packing.sweep(relaxation_with(1.2, 0.7), 2, 0.02, *silo, workers));
+      counts.back().push_back(spot::CellRelaxation(packing, relaxation_with(1.2, 0.7)).sweep(2, 0.02, *silo, workers));
       packing.take_out_below(0.48, out.back());
     }
     left.push_back(sorted_grains(packing));
@@ -408,7 +410,7 @@ TEST(TiledPackingBruteForce, ACellThatOverflowsInFlowIsMadeLarger) {
     moved = carry_out(tiled, moves, {2.0, 5e-3}, *space, workers);
     ASSERT_EQ(moved[0], plain.shares(moves[0], {2.0, 5e-3}));
     plain.displace(moves[0], {2.0, 5e-3});
-    tiled.sweep(relaxation, 0, 1.0, *space, workers);
+    spot::CellRelaxation(tiled, relaxation).sweep(0, 1.0, *space, workers);
     plain.sweep(relaxation);
   }
   scenes::expect_identical(sorted_grains(tiled), plain.grains());
@@ -421,14 +423,14 @@ TEST(TiledPackingUnit, SweepsOnlyCellsThatAreDue) {
   Workers workers(1);
   std::vector<int> moved;
   const RelaxationParameters relaxation;
-  EXPECT_EQ(packing.sweep(relaxation, 1, 1.0, *silo, workers), 0u) << "nobody has moved";
+  EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers), 0u) << "nobody has moved";
   moved = carry_out(packing, one_move({0, 0, 5}, {0.7, 0, 0.1}), {2.6, 2.5e-3}, *silo, workers);
-  EXPECT_GT(moved[0], 70 * whole_share);
-  EXPECT_EQ(packing.sweep(relaxation, 2, 1.0, *silo, workers), 0u);
-  const std::size_t swept = packing.sweep(relaxation, 1, 1.0, *silo, workers);
+  EXPECT_GT(moved[0], 70 * grain_volume);
+  EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(2, 1.0, *silo, workers), 0u);
+  const std::size_t swept = spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers);
   EXPECT_GT(swept, 80u);
   EXPECT_LT(swept, packing.size() / 2);
-  EXPECT_EQ(packing.sweep(relaxation, 1, 1.0, *silo, workers), 0u) << "the accounts are settled";
+  EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers), 0u) << "the accounts are settled";
 }
 
 TEST(TiledPackingUnit, ASweepPaysForAsManyMovesAsMakeItDue) {
@@ -442,18 +444,18 @@ TEST(TiledPackingUnit, ASweepPaysForAsManyMovesAsMakeItDue) {
       moved = carry_out(packing, one_move({0, 0, 5}, {0.7, 0, 0.1}), {2.6, 1e-5}, *silo, workers);
     std::size_t swept = 0;
     for (int sweep = 0; sweep < 14 / due; ++sweep) {
-      const std::size_t now = packing.sweep({}, due, 1.0, *silo, workers);
+      const std::size_t now = spot::CellRelaxation(packing, {}).sweep(due, 1.0, *silo, workers);
       EXPECT_GT(now, 0u) << due << " moves make a cell due, sweep " << sweep;
       if (sweep > 0) {
         EXPECT_EQ(now, swept);
       }
       swept = now;
     }
-    EXPECT_EQ(packing.sweep({}, due, 1.0, *silo, workers), 0u);
+    EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(due, 1.0, *silo, workers), 0u);
     if (14 % due > 0) {
-      EXPECT_GT(packing.sweep({}, 14 % due, 1.0, *silo, workers), 0u) << "what is left over";
+      EXPECT_GT(spot::CellRelaxation(packing, {}).sweep(14 % due, 1.0, *silo, workers), 0u) << "what is left over";
     }
-    EXPECT_EQ(packing.sweep({}, 1, 1.0, *silo, workers), 0u) << due;
+    EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(1, 1.0, *silo, workers), 0u) << due;
   }
 }
 
@@ -464,9 +466,9 @@ TEST(TiledPackingUnit, DeepOverlapsKeepACellDue) {
   std::vector<int> moved;
   moved = carry_out(packing, one_move({1, 1, 1}, {0, 0, 0}), {2.6, 2.5e-3}, *space, workers);
   const RelaxationParameters relaxation;
-  EXPECT_EQ(packing.sweep(relaxation, 1, 0.02, *space, workers), 2u);
-  EXPECT_EQ(packing.sweep(relaxation, 1, 0.02, *space, workers), 2u) << "0.02 d were left";
-  EXPECT_EQ(packing.sweep(relaxation, 1, 0.02, *space, workers), 0u);
+  EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 0.02, *space, workers), 2u);
+  EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 0.02, *space, workers), 2u) << "0.02 d were left";
+  EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 0.02, *space, workers), 0u);
 }
 
 TEST(TiledPackingUnit, HeldGrainsStay) {
@@ -475,8 +477,8 @@ TEST(TiledPackingUnit, HeldGrainsStay) {
   Workers workers(1);
   std::vector<int> moved;
   moved = carry_out(packing, one_move({1, 1, 1}, {1, 0, 0}), {2.6, 2.5e-3}, *space, workers);
-  EXPECT_EQ(moved, std::vector<int>{whole_share});
-  EXPECT_EQ(packing.sweep({}, 1, 0.02, *space, workers), 1u);
+  EXPECT_EQ(moved, std::vector<int>{grain_volume});
+  EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(1, 0.02, *space, workers), 1u);
   const auto grains = sorted_grains(packing);
   EXPECT_EQ(grains[0].position, Vector3(1, 1, 1));
   EXPECT_GT(grains[1].position.x(), 1.9);
@@ -490,7 +492,7 @@ TEST(TiledPackingAnalytic, MomentumCarriesTheLastCorrectionOn) {
   double expected = 1.0 - 0.05;
   double step = 0.05;
   for (int sweep = 0; sweep < 10; ++sweep) {
-    packing.sweep(relaxation_with(1.001, 0.5), 0, 1.0, *space, workers);
+    spot::CellRelaxation(packing, relaxation_with(1.001, 0.5)).sweep(0, 1.0, *space, workers);
     if (sweep > 0) expected -= step;
     step *= 0.5;
     EXPECT_NEAR(sorted_grains(packing)[0].position.x(), expected, 1e-3) << "sweep " << sweep;
@@ -504,9 +506,10 @@ TEST(TiledPackingAnalytic, GrainsComeToRestInContact) {
   Workers workers(1);
   RelaxationParameters relaxation;
   relaxation.contact_overlap = 0.01;
-  packing.sweep(relaxation, 0, 1.0, *space, workers);
-  EXPECT_NEAR(packing.overlap_swept(), 0.04, 1e-6) << "before the sweep, in diameters";
-  for (int sweep = 0; sweep < 20; ++sweep) packing.sweep(relaxation, 0, 1.0, *space, workers);
+  spot::CellRelaxation sweeps(packing, relaxation);
+  sweeps.sweep(0, 1.0, *space, workers);
+  EXPECT_NEAR(sweeps.largest_overlap(), 0.04, 1e-6) << "before the sweep, in diameters";
+  for (int sweep = 0; sweep < 20; ++sweep) spot::CellRelaxation(packing, relaxation).sweep(0, 1.0, *space, workers);
   const auto grains = sorted_grains(packing);
   EXPECT_NEAR(grains[1].position.x() - grains[0].position.x(), 0.99, 1e-6);
   EXPECT_NEAR(grains[3].position.x() - grains[2].position.x(), 0.995, 1e-6) << "nobody parts those who overlap by less";
@@ -516,7 +519,7 @@ TEST(TiledPackingUnit, CoincidentGrainsPartAlongX) {
   const auto space = scenes::empty_space();
   TiledPacking packing(1.0, 100.0, 0.0, {{7, {1, 1, 1}}, {3, {1, 1, 1}}}, *space);
   Workers workers(1);
-  packing.sweep({}, 0, 1.0, *space, workers);
+  spot::CellRelaxation(packing, {}).sweep(0, 1.0, *space, workers);
   const auto grains = sorted_grains(packing);
   EXPECT_NEAR(grains[0].position.x(), 0.6, 1e-6);
   EXPECT_NEAR(grains[1].position.x(), 1.4, 1e-6);
@@ -530,7 +533,7 @@ TEST(TiledPackingAnalytic, GrainsArePushedOffPlanesByAlphaDelta) {
     const double x = 5.5 + overlap, y = -3.5 - 0.5 * overlap;
     TiledPacking packing(1.0, 100.0, -1.0, {{1, {x, y, 5}}, {2, {-x, -y, 5}}, {3, {0, 0, 5}}}, *silo);
     Workers workers(1);
-    packing.sweep(relaxation_with(0.8, 0.0), 0, 1.0, *silo, workers);
+    spot::CellRelaxation(packing, relaxation_with(0.8, 0.0)).sweep(0, 1.0, *silo, workers);
     const auto grains = sorted_grains(packing);
     for (const int sign : {1, -1}) {
       const Vector3& at = grains[sign > 0 ? 0 : 1].position;
@@ -555,7 +558,7 @@ TEST(TiledPackingUnit, WideSilosHaveTheWallsWhereTheyAre) {
       TiledPacking packing(d, 1000.0 * d, 0.0, start, *silo);
       Workers workers(1);
       const auto before = sorted_grains(packing);
-      packing.sweep({}, 0, 1.0, *silo, workers);
+      spot::CellRelaxation(packing, {}).sweep(0, 1.0, *silo, workers);
       scenes::expect_identical(sorted_grains(packing), before);
       ASSERT_FALSE(HasFailure()) << width << " diameters of " << d;
     }
@@ -590,7 +593,7 @@ TEST(TiledPackingUnit, SpotsThatAreTooWideAreNamed) {
               }),
               AllOf(HasSubstr("spot radius is 8 "), HasSubstr("below 8")));
   moved = carry_out(packing, one_move({8.9, 1, 1}, {1, 0, 0}), {7.99, 2.5e-3}, *space, workers);
-  EXPECT_EQ(moved[0], whole_share);
+  EXPECT_EQ(moved[0], grain_volume);
 }
 
 /// An empty place has id -1.
@@ -614,7 +617,7 @@ TEST(TiledPackingUnit, NoMovesNoGrainsNoError) {
   EXPECT_TRUE(moved.empty());
   moved = carry_out(packing, one_move({8.9, 1, 1}, {1, 0, 0}), {2.6, 2.5e-3}, *space, workers);
   EXPECT_EQ(moved, std::vector<int>{0});
-  EXPECT_EQ(packing.sweep({}, 1, 0.02, *space, workers), 0u);
+  EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(1, 0.02, *space, workers), 0u);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using spot::DrainageLimits;
 using spot::Grain;
 using spot::Packing;
 using spot::SpotParameters;
-using spot::SpotPopulation;
+using spot::Spots;
 using spot::TimeOrderedDrainage;
 
 /// Where moves are counted: below the sinking surface, above where the walk still converges on the orifice.
@@ -45,16 +45,16 @@ TEST(VolumeClosureSlow, FluxThroughEveryHeightEqualsOutflowAndWhatTheSpotsCarry)
                                Packing(1.0, 100.0, scenes::dense_grains({-7.5, -3.5, 0.5}, {7.5, 3.5, 30.0}, 0.01, 1)));
 
   // The same moves again, one at a time, to know how many grains each of them moved.
-  SpotPopulation moves(spots, *silo, 1.0);
+  Spots moves(spots, *silo, 1.0);
   double moved_in_bulk = 0.0, bulk_moves = 0.0;
   const auto advance_to = [&](double time) {
-    while (const auto move = moves.next_move(time, *silo)) {
-      const auto before = drainage.counters().shares_moved;
+    while (const auto move = moves.next_step(time, *silo)) {
+      const auto before = drainage.counters().volume_moved;
       drainage.advance_to(move->time);
-      const auto moved = drainage.counters().shares_moved - before;
-      if (moved == 0 && move->middle.z() > spots.radius) moves.remove_last_moved();
+      const auto moved = drainage.counters().volume_moved - before;
+      if (moved == 0 && move->middle.z() > spots.radius) moves.remove(move->spot);
       if (move->middle.z() < bulk_low || move->middle.z() > bulk_high) continue;
-      moved_in_bulk += static_cast<double>(moved) / spot::whole_share;
+      moved_in_bulk += static_cast<double>(moved) / spot::grain_volume;
       ++bulk_moves;
     }
   };

@@ -82,13 +82,13 @@ class PlainWindows {
       if (!live.out) places.push_back(live.spot.position);
     spot::Alone alone;
     field.count(places, alone);
-    const auto set_pace = [&](spot::Spot& spot, double time) {
-      if (spots_.dilation > 0.0) walk_.set_pace(spot, time, field.pace(spot.position));
+    const auto set_speed = [&](spot::Spot& spot, double time) {
+      if (spots_.dilation > 0.0) walk_.set_relative_speed(spot, time, field.relative_speed(spot.position));
     };
-    for (Live& live : live_) set_pace(live.spot, now);
+    for (Live& live : live_) set_speed(live.spot, now);
     for (; next_birth_ <= until; next_birth_ += walk_.time_before_birth(++born_)) {
       live_.push_back({walk_.birth(born_, next_birth_, *silo_), false});
-      set_pace(live_.back().spot, next_birth_);
+      set_speed(live_.back().spot, next_birth_);
     }
     for (Live& live : live_) {
       while (live.spot.next_step <= until && !live.out)
@@ -98,7 +98,7 @@ class PlainWindows {
     for (auto& [move, live] : moves_of_window_) {
       const int shares = packing_.shares(move, spots_);
       ++moves;
-      shares_moved += shares;
+      volume_moved += shares;
       move.weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet, shares);
       if (shares == 0 && move.middle.z() > spots_.radius) live->out = true;
     }
@@ -108,7 +108,7 @@ class PlainWindows {
   }
 
   static constexpr double outlet = -1.0;
-  std::int64_t moves = 0, shares_moved = 0;
+  std::int64_t moves = 0, volume_moved = 0;
   std::vector<Grain> drained;
   std::vector<Grain> grains() const { return packing_.grains(); }
   const spot::MovesReceived& received() const { return packing_.received; }
@@ -164,7 +164,7 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   }
   scenes::expect_identical(drainage.take_drained(), by_id(plain.drained));
   EXPECT_EQ(drainage.counters().moves, plain.moves);
-  EXPECT_EQ(drainage.counters().shares_moved, plain.shares_moved);
+  EXPECT_EQ(drainage.counters().volume_moved, plain.volume_moved);
   EXPECT_EQ(drainage.take_moves_received(), plain.received());
   EXPECT_EQ(drainage.counters().sweeps, 0);
   EXPECT_GT(drainage.counters().drained, 50);
@@ -218,7 +218,7 @@ TEST(WindowedDrainageInvariance, ThreadsChangeNothing) {
   for (const int threads : {2, 3, 4}) {
     WindowedDrainage other = drainage_of(filling(15.0), spots, coarse_relaxation(), 0.02, threads);
     other.advance_to(6.0);
-    EXPECT_EQ(other.counters().shares_moved, one.counters().shares_moved) << threads;
+    EXPECT_EQ(other.counters().volume_moved, one.counters().volume_moved) << threads;
     EXPECT_EQ(other.counters().grains_swept, one.counters().grains_swept) << threads;
     scenes::expect_identical(other.grains(), one.grains());
     scenes::expect_identical(other.take_drained(), drained);

@@ -4,9 +4,16 @@
 import argparse
 import os
 
-from .. import (calibration, calibration_output, calibration_plots, calibration_refinement, calibration_response,
-                calibration_spreading, calibration_view, command_line)
-from ..errors import AnalysisError
+from ..base.errors import AnalysisError
+from ..calibration.lammps_variables import lammps_variables
+from ..calibration.measurement import measure
+from ..calibration.parameters import parameters
+from ..calibration.refinement import refine
+from ..calibration.response import PROFILES, STORED, stored_response
+from ..calibration.spreading import warn_of_widening
+from ..calibration.view import CONCEPTS
+from ..report import calibration_output, calibration_plots
+from . import command_line
 
 SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), *3 * [os.pardir])
 EXAMPLE = os.path.join(SOURCES, "examples", "silo", "in.silo_spot")
@@ -26,7 +33,7 @@ def parse_arguments():
     parser.add_argument("--plots", metavar="FOLDER", help="a picture of every fit")
     parser.add_argument("--buffer", type=float, default=0.25, metavar="D",
                         help="distance that spot centres keep from side walls, fix spot's 'buffer' (default: %(default)s d)")
-    parser.add_argument("--response", choices=sorted(calibration_response.STORED), default="windowed",
+    parser.add_argument("--response", choices=sorted(STORED), default="windowed",
                         help="what is taken for the difference between what spots do and what grains show: that of fix "
                         "spot's driver, of spots without relaxation, or none, as 2006 (default: %(default)s)")
     group = parser.add_argument_group("refinement with lmp")
@@ -43,22 +50,22 @@ def calibrate():
     options = parse_arguments()
     if options.refine > 0 and not os.path.isfile(options.deck):
         raise AnalysisError(f"{options.deck}: no such deck to refine with; give one with --deck")
-    run = command_line.open_run(options.dumps, options, "", "calibrate", calibration_view.CONCEPTS)
-    measured = calibration.measure(run, options.start, options.end, options.buffer)
-    calibration_spreading.warn_of_widening(measured.view, command_line.print_warning)
-    response = calibration_response.stored_response(options.response)
-    profile = calibration_response.PROFILES.get(options.response, "uniform")
-    uncorrected = calibration.parameters(measured, calibration_response.stored_response("2006"))
-    result = calibration.parameters(measured, response)
+    run = command_line.open_run(options.dumps, options, "", "calibrate", CONCEPTS)
+    measured = measure(run, options.start, options.end, options.buffer)
+    warn_of_widening(measured.view, command_line.print_warning)
+    response = stored_response(options.response)
+    profile = PROFILES.get(options.response, "uniform")
+    uncorrected = parameters(measured, stored_response("2006"))
+    result = parameters(measured, response)
     if options.refine > 0:
-        result, response = calibration_refinement.refine(
+        result, response = refine(
             measured, response, options.refine, options.deck, options.lmp, options.refine_time, options.fix,
             command_line.print_warning, profile=profile)
     span = measured.view.interval.span
     print(f"{span[0]:g} to {span[1]:g} tau, {len(measured.view.snapshots)} snapshots\n")
     print(calibration_output.table(result, uncorrected))
     if options.output:
-        write(options.output, calibration_output.lammps_variables(result, options.dumps, span, profile))
+        write(options.output, lammps_variables(result, options.dumps, span, profile))
     if options.json:
         write(options.json, calibration_output.as_json(measured, result, uncorrected, response, options.dumps))
     if options.plots:

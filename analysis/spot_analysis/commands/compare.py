@@ -4,9 +4,15 @@
 import argparse
 import os
 
-from .. import command_line, comparison, report
-from ..errors import AnalysisError
-from ..progress import Progress
+from ..base.errors import AnalysisError
+from ..base.progress import Progress
+from ..report import comparison, table
+from ..report.comparison_json import write_json
+from ..report.figures import draw_pictures
+from ..report.page import write_html
+from ..statistics.interval import STEADY_FROM, choose_interval, common_times
+from ..statistics.interval_view import IntervalView
+from . import command_line
 
 
 def parse_arguments():
@@ -17,7 +23,7 @@ def parse_arguments():
     parser.add_argument("spot", metavar="SPOT")
     parser.add_argument("-o", "--output", default="results/silo", metavar="FOLDER", help="(default: %(default)s)")
     parser.add_argument("--from", dest="start", type=float, metavar="TAU",
-                        help=f"start of the interval (default: {comparison.STEADY_FROM:g} tau, from where flow is "
+                        help=f"start of the interval (default: {STEADY_FROM:g} tau, from where flow is "
                         "steady, if both runs are long enough, else the first common time)")
     parser.add_argument("--to", dest="end", type=float, metavar="TAU",
                         help="end of the interval (default: last common time)")
@@ -39,27 +45,27 @@ def compare():
     spot = command_line.open_run(options.spot, options, "spot-", "spot")
     for run, source in ((dem, options.dem), (spot, options.spot)):
         require_all_measured(run, source)
-    dem_common, spot_common = comparison.common_times(dem, spot)
+    dem_common, spot_common = common_times(dem, spot)
     times = dem.times[dem_common]
-    interval = comparison.choose_interval(times, options.start, options.end)
-    views = {"DEM": comparison.IntervalView(dem, dem_common, interval),
-             "spot": comparison.IntervalView(spot, spot_common, interval)}
+    interval = choose_interval(times, options.start, options.end)
+    views = {"DEM": IntervalView(dem, dem_common, interval),
+             "spot": IntervalView(spot, spot_common, interval)}
     progress = Progress("report")
     rows = comparison.compare(views["DEM"], views["spot"], progress)
 
     print(f"common times: {times[0]:g} to {times[-1]:g} tau, {len(times)} snapshots")
-    print(report.describe(views["spot"]))
+    print(table.describe(views["spot"]))
     print()
-    print(report.table(rows))
+    print(table.table(rows))
     print()
-    print(report.verdict(rows))
+    print(table.verdict(rows))
     command_line.warn_of_left_out({row.name: row.left_out for row in rows if row.left_out})
 
     os.makedirs(options.output, exist_ok=True)
-    report.write_json(os.path.join(options.output, "comparison.json"), rows, views)
-    pictures = report.draw_pictures(options.output, views, progress)
+    write_json(os.path.join(options.output, "comparison.json"), rows, views)
+    pictures = draw_pictures(options.output, views, progress)
     page = os.path.join(options.output, "report.html")
-    report.write_html(page, rows, views, pictures)
+    write_html(page, rows, views, pictures)
     print(f"\nreport: {page}")
 
 

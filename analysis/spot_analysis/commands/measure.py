@@ -4,7 +4,9 @@
 import argparse
 import os
 
-from .. import command_line, comparison, run_statistics
+from ..report import comparison
+from ..statistics.measuring import measure_dumps
+from . import command_line
 
 
 def measure():
@@ -17,7 +19,7 @@ def measure():
     if not options.output.endswith(".npz"):
         parser.error(f"--output '{options.output}' must end in .npz")
     scene = command_line.scene_from_options(options, options.dumps)
-    statistics = run_statistics.measure(options.dumps, scene, "measure", {"source": options.source or scene.program},
+    statistics = measure_dumps(options.dumps, scene, "measure", {"source": options.source or scene.program},
                                         warn=command_line.print_warning)
     statistics.save(options.output)
     print(f"{options.output}: {len(statistics.times)} snapshots, t = {statistics.times[0]:g} to "

@@ -7,6 +7,8 @@
 
 #include "packing/packed_grain.hpp"
 #include "spot/packing/displacement.hpp"
+#include "spot/relaxation/calibration.hpp"
+#include "spot/relaxation/settling.hpp"
 
 namespace spot {
 
@@ -18,6 +20,16 @@ std::vector<Grain> take_grains(ByteReader& saved) {
   return grains;
 }
 
+/// Do grains come down by themselves? Whoever lets them, TiledPacking, knows equal grains and space that does not
+/// repeat.
+bool may_settle(const Packing& packing, const std::vector<Grain>& come = {}) {
+  const double radius = 0.5 * packing.diameter();
+  const auto equal = [&](const Grain& grain) { return radius_in(packing.diameter(), grain) == radius; };
+  const std::vector<Grain> grains = packing.grains();
+  return !packing.periodic().any() && std::all_of(grains.begin(), grains.end(), equal) &&
+         std::all_of(come.begin(), come.end(), equal);
+}
+
 }  // namespace
 
 TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
@@ -25,10 +37,12 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
                                          Packing packing)
     : Drainage(spots, relaxation, limits, std::move(container), packing.diameter()),
       packing_(std::move(packing)),
-      population_(spots, *container_, packing_.diameter()),
+      spots_(spots, Drainage::container(), packing_.diameter()),
       relaxation_(relaxation) {
+  require_same_periods();
   require_valid_start();
-  TiledPacking tiled(packing_.diameter(), packing_.extent(), limits_.outlet, packing_.grains(), *container_);
+  if (!may_settle(packing_)) return;
+  TiledPacking tiled(packing_.diameter(), packing_.extent(), limits.outlet, packing_.grains(), Drainage::container());
   let_settle(tiled, true);
 }
 
@@ -41,11 +55,17 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
                                          const DrainageLimits& limits, std::shared_ptr<const Container> container,
                                          double diameter, double extent, ByteReader saved)
     : Drainage(spots, relaxation, limits, std::move(container), diameter),
-      packing_(diameter, extent, take_grains(saved)),
-      population_(spots, *container_, diameter, saved),
+      packing_(diameter, extent, take_grains(saved), Drainage::container().periodic()),
+      spots_(spots, Drainage::container(), diameter),
       relaxation_(relaxation) {
-  counters_ = saved.take<Counters>();
+  spots_.restore(saved);
+  set_counters(saved.take<Counters>());
   relaxed_everywhere_ = saved.take<std::int64_t>();
+}
+
+void TimeOrderedDrainage::require_same_periods() const {
+  if (packing_.periodic() != container().periodic().on(packing_.quantum()))
+    throw InvalidContainer("space repeats otherwise in the container than in the packing");
 }
 
 /// Lists need not be saved: no bit depends on them.
@@ -53,17 +73,18 @@ Bytes TimeOrderedDrainage::save() const {
   Bytes bytes;
   append(bytes, static_cast<std::uint64_t>(packing_.size()));
   for (const Grain& grain : packing_.grains()) append(bytes, grain);
-  population_.save(bytes);
-  append(bytes, counters_);
+  spots_.save(bytes);
+  append(bytes, counters());
   append(bytes, relaxed_everywhere_);
   seal(bytes);
   return bytes;
 }
 
 void TimeOrderedDrainage::advance_to(double time) {
-  const bool global = relaxation_parameters_.schedule == RelaxationSchedule::global && relaxation_parameters_.every > 0;
-  const double interval = relaxation_parameters_.every * parameters_.mean_waiting_time();
-  while (const auto move = population_.next_move(time, container())) {
+  const bool global =
+      relaxation_parameters().schedule == RelaxationSchedule::global && relaxation_parameters().every > 0;
+  const double interval = relaxation_parameters().every * spot_parameters().mean_waiting_time();
+  while (const auto move = spots_.next_step(time, container())) {
     while (global && static_cast<double>(relaxed_everywhere_ + 1) * interval <= move->time) relax_everywhere();
     carry_out(*move);
   }
@@ -71,32 +92,31 @@ void TimeOrderedDrainage::advance_to(double time) {
 
 void TimeOrderedDrainage::carry_out(Move move) {
   packing_.refresh(container());
-  const double reach = parameters_.radius + relaxation_parameters_.shell * packing_.diameter();
+  const double reach = spot_parameters().radius + relaxation_parameters().shell * packing_.diameter();
   packing_.find_movable(move.middle, reach, near_);
-  if (parameters_.fixed_volume > 0.0)
-    move.weight = fixed_volume_weight(parameters_, move.middle.z() - limits_.outlet,
-                                      enclosed_shares(packing_, near_, move, parameters_));
-  const int shares = displace(packing_, near_, move, parameters_, received());
-  ++counters_.moves;
-  counters_.shares_moved += shares;
-  if (shares == 0) {
+  if (spot_parameters().fixed_volume > 0.0)
+    move.weight = fixed_volume_weight(spot_parameters(), move.middle.z() - limits().outlet,
+                                      enclosed_volume(packing_, near_, move, spot_parameters()));
+  const int enclosed = displace(packing_, near_, move, spot_parameters(), received());
+  count_move(enclosed);
+  if (enclosed == 0) {
     // Below the orifice a spot may meet no grains yet; above it, it has come out at the top of the packing.
-    if (move.middle.z() > container().orifice().centre.z() + parameters_.radius) population_.remove_last_moved();
+    if (move.middle.z() > container().orifice().centre.z() + spot_parameters().radius) spots_.remove(move.spot);
     return;
   }
   if (relaxes_around(move)) {
     packing_.update_lists(container());
     relax(near_);
   }
-  if (move.middle.z() - reach < limits_.outlet) take_out_drained();
+  if (move.middle.z() - reach < limits().outlet) take_out_drained();
 }
 
 bool TimeOrderedDrainage::relaxes_around(const Move& move) const {
-  const int k = relaxation_parameters_.every;
+  const int k = relaxation_parameters().every;
   if (k == 0) return false;
-  switch (relaxation_parameters_.schedule) {
+  switch (relaxation_parameters().schedule) {
     case RelaxationSchedule::moves:
-      return counters_.moves % k == 0;
+      return counters().moves % k == 0;
     case RelaxationSchedule::chance:
       return move.chance * k < 1.0;
     case RelaxationSchedule::spot:
@@ -108,12 +128,11 @@ bool TimeOrderedDrainage::relaxes_around(const Move& move) const {
 
 void TimeOrderedDrainage::relax(const std::vector<std::uint32_t>& grains) {
   const double deepest = relaxation_.sweep(packing_, container(), grains);
-  ++counters_.sweeps;
-  counters_.grains_swept += static_cast<std::int64_t>(grains.size());
-  // Pushes that make overlaps much deeper start from deep ones.
-  if (!relaxes_every_move() || deepest <= 0.25 * overlap_allowed()) return;
+  count_sweep(grains.size());
+  if (!relaxes_every_move() || deepest <= calibration::part_of_overlap_to_look_from * limits().overlap_allowed())
+    return;
   packing_.update_lists(container());
-  require_no_collapse(packing_.largest_overlap(grains));
+  checks().require_no_collapse(packing_.largest_overlap(grains));
 }
 
 void TimeOrderedDrainage::relax_everywhere() {
@@ -127,26 +146,26 @@ void TimeOrderedDrainage::relax_everywhere() {
 
 void TimeOrderedDrainage::take_out_drained() {
   packing_.update_lists(container());
-  const std::size_t before = drained_.size();
-  for (const std::uint32_t i : near_) {
-    if (packing_.z()[i] >= limits_.outlet) continue;
-    drained_.push_back(packing_.remove(i));
-    ++counters_.drained;
-  }
-  if (relaxes_every_move()) require_left_through_orifice(before);
+  std::vector<Grain> drained;
+  for (const std::uint32_t i : near_)
+    if (packing_.z()[i] < limits().outlet) drained.push_back(packing_.remove(i));
+  add_drained(drained);
+  if (relaxes_every_move()) checks().require_left_through_orifice(drained);
 }
 
 Overlap TimeOrderedDrainage::carry_out(const GrainChanges& changes) {
-  TiledPacking tiled(packing_.diameter(), packing_.extent(), limits_.outlet, packing_.grains(), container());
-  tiled.change(changes.gone, changes.come, container());
+  if (!may_settle(packing_, changes.come))
+    throw InvalidPacking("grains cannot come or go yet where they have unequal radii or space repeats");
+  TiledPacking tiled(packing_.diameter(), packing_.extent(), limits().outlet, packing_.grains(), container());
+  const Overlap largest = tiled.change(changes.gone, changes.come, container());
   const std::set<std::int64_t> gone(changes.gone.begin(), changes.gone.end());
   std::vector<Grain> grains;
   for (const Grain& grain : packing_.grains())
     if (gone.count(grain.id) == 0) grains.push_back(grain);
   grains.insert(grains.end(), changes.come.begin(), changes.come.end());
   packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
-  if (tiled.largest_overlap_of_new().depth <= limits_.largest_overlap) let_settle(tiled, false);
-  return tiled.largest_overlap_of_new();
+  if (largest.depth <= limits().largest_overlap) let_settle(tiled, false);
+  return largest;
 }
 
 /// In the cells of the windowed driver, whose quantum is a multiple of the one here.
@@ -154,8 +173,8 @@ void TimeOrderedDrainage::let_settle(TiledPacking& tiled, bool everybody) {
   Workers alone(1);
   std::map<std::int64_t, Vector3> before;
   tiled.visit_grains([&](const Grain& grain) { before[grain.id] = grain.position; });
-  if (tiled.settle(everybody, parameters_.seed, relaxation_parameters_.contact_overlap, container(), alone) == 0)
-    return;
+  Settling settling(tiled, spot_parameters().seed, relaxation_parameters().contact_overlap, container(), alone);
+  if (settling.run(everybody) == 0) return;
   std::map<std::int64_t, Vector3> moved;
   tiled.visit_grains([&](const Grain& grain) {
     if (grain.position != before[grain.id]) moved[grain.id] = grain.position;
@@ -166,15 +185,15 @@ void TimeOrderedDrainage::let_settle(TiledPacking& tiled, bool everybody) {
   packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
 }
 
-void TimeOrderedDrainage::replace_container(std::shared_ptr<const Container> container) {
-  container_ = std::move(container);
-  packing_.mark_near_walls(*container_);
-  population_.replace_container(*container_);
+void TimeOrderedDrainage::take_new_container() {
+  require_same_periods();
+  packing_.mark_near_walls(container());
+  spots_.replace_container(container());
 }
 
 void TimeOrderedDrainage::visit_grains(const std::function<void(const Grain&)>& visit) const {
   for (std::size_t i = 0; i < packing_.slots(); ++i)
-    if (packing_.present(i)) visit({packing_.id(i), packing_.position(i), packing_.held(i)});
+    if (packing_.present(i)) visit(packing_.grain(i));
 }
 
 Overlap TimeOrderedDrainage::largest_overlap() {

@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include <algorithm>
-
 #include "spot/base/errors.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
-#include "walk/packed_spot.hpp"
 
 namespace spot {
 
 Bytes WindowedDrainage::save() const {
   Bytes bytes;
   append(bytes, windows_);
-  append(bytes, born_);
-  append(bytes, next_birth_);
-  append(bytes, counters_);
-  append(bytes, static_cast<std::uint64_t>(walkers_.size()));
-  for (const Walker& walker : walkers_) {
-    append(bytes, walker.spot);
-    append(bytes, walker.removed);
-  }
+  append(bytes, counters());
+  spots_.save(bytes);
   append(bytes, packing_.save());
   seal(bytes);
   return bytes;
@@ -27,36 +18,23 @@ Bytes WindowedDrainage::save() const {
 std::vector<Bytes> WindowedDrainage::read(const std::vector<Bytes>& saved) {
   if (saved.empty()) throw InvalidState("there is no saved state");
   std::vector<Bytes> packings;
+  Counters counters;
   for (const Bytes& part : saved) {
     ByteReader reader = unseal(part);
     windows_ = reader.take<std::int64_t>();
-    born_ = reader.take<std::int64_t>();
-    next_birth_ = reader.take<double>();
-    const auto counters = reader.take<Counters>();
-    counters_.sweeps = counters.sweeps;
-    counters_.grains_swept = counters.grains_swept;
+    const auto read = reader.take<Counters>();
+    counters.sweeps = read.sweeps;
+    counters.grains_swept = read.grains_swept;
     if (communicator_->rank() == 0) {  // which goes on counting for all
-      counters_.moves += counters.moves;
-      counters_.shares_moved += counters.shares_moved;
-      counters_.drained += counters.drained;
+      counters.moves += read.moves;
+      counters.volume_moved += read.volume_moved;
+      counters.drained += read.drained;
     }
-    for (auto spots = reader.take<std::uint64_t>(); spots > 0; --spots) {
-      const Spot spot = take_spot(reader);
-      walkers_.push_back({spot, reader.take<bool>()});
-    }
+    spots_.restore(reader);
     packings.push_back(reader.take_all<char>());
   }
+  set_counters(counters);
   return packings;
-}
-
-/// After the packing has been made: of all spots that were read, keeps this rank's.
-void WindowedDrainage::keep_own_spots() {
-  const auto others = std::remove_if(walkers_.begin(), walkers_.end(),
-                                     [this](const Walker& walker) { return !here(walker.spot.position); });
-  walkers_.erase(others, walkers_.end());
-  std::sort(walkers_.begin(), walkers_.end(), [](const Walker& a, const Walker& b) { return a.spot.id < b.spot.id; });
-  removed_ = 0;
-  for (const Walker& walker : walkers_) removed_ += walker.removed ? 1 : 0;
 }
 
 WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
@@ -68,12 +46,13 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       workers_(std::make_unique<Workers>(threads)),
       window_(positive_window(window)),
       due_(moves_until_due(spots, relaxation.tolerance, diameter)),
-      packing_(diameter, extent, read(saved), *container_, communicator_),
-      walk_(spots, *container_),
-      dilation_(spots, *container_, diameter) {
-  TiledPacking::require_radius(spots.radius, diameter);
+      spots_(spots, Drainage::container(), diameter),
+      packing_(diameter, extent, read(saved), Drainage::container(), communicator_),
+      relaxation_(packing_, relaxation),
+      moves_(communicator_) {
+  BlockMoves::require_radius(spots.radius, diameter);
   require_fitting_window();
-  keep_own_spots();
+  spots_.take_out_others([this](const Spot& spot) { return here(spot); });
 }
 
 }  // namespace spot

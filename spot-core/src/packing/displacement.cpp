@@ -3,69 +3,54 @@
 
 #include <algorithm>
 
+#include "spot/walk/calibration.hpp"
+
 namespace spot {
 
-namespace {
-
-/// A spot at the surface with fewer grains would throw them about.
-constexpr double fewest_grains = 20.0;
-
-}  // namespace
-
 double largest_weight(const SpotParameters& parameters) {
-  return std::max(1.0, parameters.fixed_volume / fewest_grains);
+  return std::max(1.0, parameters.fixed_volume / calibration::least_enclosed);
 }
 
-double part_above_outlet(InfluenceProfile profile, double z) {
-  z = std::clamp(z, -1.0, 1.0);
-  if (profile == InfluenceProfile::uniform) return 0.5 + 0.75 * z - 0.25 * z * z * z;
-  return 0.5 + 0.9375 * (z - 2.0 / 3.0 * z * z * z + 0.2 * z * z * z * z * z);
-}
-
-double fixed_volume_weight(const SpotParameters& parameters, double height, int shares) {
+double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed) {
   if (parameters.fixed_volume == 0.0) return 1.0;
-  const double part = part_above_outlet(parameters.profile, height / parameters.radius);
-  const double grains = static_cast<double>(shares) / whole_share;
-  return parameters.fixed_volume * part / std::max(grains, fewest_grains * part + 1e-9);
+  const double part = parameters.profile->part_above(height / parameters.radius);
+  const double grains = static_cast<double>(enclosed) / grain_volume;
+  return parameters.fixed_volume * part / std::max(grains, calibration::least_enclosed * part + 1e-9);
 }
 
 namespace {
 
-/// Of a grain at this squared distance, which is no more than R_s^2.
-double share_at(const SpotParameters& spots, double squared) {
-  if (spots.profile == InfluenceProfile::uniform) return 1.0;
-  return 1.0 - squared / (spots.radius * spots.radius);
-}
-
-int parts_of(double share) { return static_cast<int>(share * whole_share); }
+/// Of a grain with this volume_parts() and share of the influence.
+int volume_of(int grain, double share) { return static_cast<int>(share * grain); }
 
 }  // namespace
 
-int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
+int enclosed_volume(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
                     const SpotParameters& spots) {
-  int shares = 0;
+  int enclosed = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
-    if (squared <= spots.radius * spots.radius) shares += parts_of(share_at(spots, squared));
+    if (squared <= spots.radius * spots.radius)
+      enclosed += volume_of(packing.volume(i), spots.profile->share(squared, spots.radius));
   }
-  return shares;
+  return enclosed;
 }
 
 int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move, const SpotParameters& spots,
              MovesReceived* received) {
   const Quantum& quantum = packing.quantum();
   const Vector3 whole = -spots.influence * move.weight * move.step;
-  int shares = 0;
+  int enclosed = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
     if (squared > spots.radius * spots.radius) continue;
-    const double share = share_at(spots, squared);
+    const double share = spots.profile->share(squared, spots.radius);
     const Vector3 by = share * whole;
     packing.move(i, quantum.round(by.x()), quantum.round(by.y()), quantum.round(by.z()));
     if (received) ++(*received)[packing.id(i)];
-    shares += parts_of(share);
+    enclosed += volume_of(packing.volume(i), share);
   }
-  return shares;
+  return enclosed;
 }
 
 }  // namespace spot

@@ -16,11 +16,12 @@ constexpr std::uint32_t pack = 4, lanes = 16;
 /// go on with as many that are fetched and not used.
 constexpr std::uint32_t ahead = 8;
 
-/// Lists of neighbours: `capacity` places a point, `size` of them in use; the others hold any valid index.
+/// Lists of neighbours: that of a point begins with a `block` of `lanes` entries, and has `size` of them; what follows
+/// in the last block is any valid index.
 struct Lists {
   const std::uint32_t* neighbours;
+  const std::uint32_t* block;
   const std::uint8_t* size;
-  std::uint32_t capacity;
 };
 
 /// How grains push each other apart.
@@ -36,8 +37,8 @@ struct Push {
 struct Kernels {
   const char* instruction_set;
 
-  /// The shares of the points in a move around `middle`, together, each cut to whole parts (whole_share).
-  int (*enclosed_shares)(const Point* points, std::size_t n, const Point& middle, const Reach& reach);
+  /// The shares of the points in a move around `middle`, together, each cut to whole parts (grain_volume).
+  int (*enclosed_volume)(const Point* points, std::size_t n, const Point& middle, const Reach& reach);
 
   /// Adds to every point its share of `by`, cut to whole quanta.
   void (*displace)(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by);

@@ -14,10 +14,15 @@ using spot::kernels::ahead;
 using spot::kernels::Lists;
 
 /// Of a whole share.
-constexpr float parts = spot::whole_share;
+constexpr float parts = spot::grain_volume;
 
 /// Differences of states are seen only where an empty place is on one side.
 constexpr std::int32_t only_empty = Point::empty;
+
+/// Here and not inline in a header: no code of one build may be linked into another.
+inline const std::uint32_t* list_of(const Lists& lists, std::uint32_t point) {
+  return lists.neighbours + static_cast<std::size_t>(lists.block[point]) * spot::kernels::lanes;
+}
 
 #ifndef __AVX2__
 
@@ -38,7 +43,7 @@ float share(const Point& point, const Point& middle, const Reach& reach) {
   return linear > 0.0f ? linear < 1.0f ? linear : 1.0f : 0.0f;
 }
 
-int enclosed_shares(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+int enclosed_volume(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
   int shares = 0;
   for (std::size_t i = 0; i < n; ++i) shares += static_cast<int>(share(points[i], middle, reach) * parts);
   return shares;
@@ -75,7 +80,7 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
                          const spot::kernels::Push& push, Point* pushes) {
   for (std::size_t i = 0; i < n; ++i) {
     const Point& own = points[grains[i]];
-    const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
+    const std::uint32_t* list = list_of(lists, grains[i]);
     Point sum = {0, 0, 0, 0};
     float depth = 0.0f;
     for (std::uint32_t k = 0; k < lists.size[grains[i]]; ++k) {
@@ -261,7 +266,7 @@ inline Floats shares(Pack points, Pack middle, Floats radius_squared, Floats per
   return positive < one ? positive : one;
 }
 
-int enclosed_shares(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+int enclosed_volume(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
   const Pack centre = repeat(load_point(middle));
   const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square);
   Pack sum = {};
@@ -328,8 +333,8 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
     const Pack x = all(own.x), y = all(own.y), z = all(own.z);
     Pack push_x = {}, push_y = {}, push_z = {};
     Floats depth = zero;
-    const std::uint32_t* list = lists.neighbours + static_cast<std::size_t>(grains[i]) * lists.capacity;
-    __builtin_prefetch(lists.neighbours + static_cast<std::size_t>(grains[i + ahead]) * lists.capacity);
+    const std::uint32_t* list = list_of(lists, grains[i]);
+    __builtin_prefetch(list_of(lists, grains[i + ahead]));
     const std::int32_t size = lists.size[grains[i]];
     for (std::int32_t k = 0; k < size; k += static_cast<std::int32_t>(width), list += width) {
       // As many points as a pack has numbers, turned into their x, y, z and states.
@@ -372,7 +377,7 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 namespace spot::kernels {
 
 extern const Kernels SPOT_KERNELS;
-const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_shares, &displace,    &push_off_neighbours, &correct,
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_volume, &displace,    &push_off_neighbours, &correct,
                               &find_within,         &farthest,        &find_reached};
 
 }  // namespace spot::kernels

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "spot/base/bytes.hpp"
-#include "spot/packing/packing.hpp"
+#include "spot/packing/grain.hpp"
 
 namespace spot {
 
@@ -11,12 +11,14 @@ inline void append(Bytes& bytes, const Grain& grain) {
   append(bytes, grain.id);
   append(bytes, grain.position);
   append(bytes, grain.held);
+  append(bytes, grain.radius);
 }
 
 inline Grain take_grain(ByteReader& reader) {
   const auto id = reader.take<std::int64_t>();
   const auto position = reader.take<Vector3>();
-  return {id, position, reader.take<bool>()};
+  const auto held = reader.take<bool>();
+  return {id, position, held, reader.take<double>()};
 }
 
 }  // namespace spot

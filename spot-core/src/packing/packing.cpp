@@ -17,6 +17,9 @@ namespace {
 /// that grains are listed anew more often.
 constexpr double skin_in_diameters = 0.2;
 
+/// More than twice what lists reach while grains are on their way, in diameters: then one image is the nearest.
+constexpr double least_period = 4.0;
+
 template <typename T>
 void reorder(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
   std::vector<T> sorted(order.size());
@@ -26,8 +29,17 @@ void reorder(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
 
 }  // namespace
 
-Packing::Packing(double diameter, double extent, const std::vector<Grain>& grains)
-    : diameter_(diameter), extent_(extent), quantum_(diameter, extent), half_skin_(0.5 * skin_in_diameters * diameter) {
+Packing::Packing(double diameter, double extent, const std::vector<Grain>& grains, const Periodic& periodic)
+    : diameter_(diameter),
+      extent_(extent),
+      quantum_(diameter, extent),
+      periodic_(periodic.on(quantum_)),
+      half_skin_(0.5 * skin_in_diameters * diameter) {
+  periodic_.require_length(least_period * diameter, "four diameters, so that no grain touches another twice");
+  for (int axis = 0; axis < 2; ++axis)
+    if (periodic_.along(axis) && std::max(-periodic_.low(axis), periodic_.high(axis)) > extent)
+      throw InvalidContainer(message("space repeats from ", periodic_.low(axis), " to ", periodic_.high(axis),
+                                     " along ", "xy"[axis], ", farther from the origin than ", extent));
   if (grains.size() >= nowhere)
     throw InvalidPacking(message("a packing of ", grains.size(), " grains is too large; below 2^32 are allowed"));
   for (const Grain& grain : grains) {
@@ -36,9 +48,11 @@ Packing::Packing(double diameter, double extent, const std::vector<Grain>& grain
     if (grain.position.cwiseAbs().maxCoeff() > extent)
       throw InvalidPacking(message("grain ", grain.id, " is farther from the origin than ", extent));
     ids_.push_back(grain.id);
-    x_.push_back(quantum_.snap(grain.position.x()));
-    y_.push_back(quantum_.snap(grain.position.y()));
+    x_.push_back(periodic_.wrap(quantum_.snap(grain.position.x()), 0));
+    y_.push_back(periodic_.wrap(quantum_.snap(grain.position.y()), 1));
     z_.push_back(quantum_.snap(grain.position.z()));
+    radii_.push_back(radius_in(diameter, grain));
+    volumes_.push_back(static_cast<std::uint16_t>(volume_parts(diameter, radii_.back())));
     held_.push_back(grain.held ? 1 : 0);
   }
   std::vector<std::int64_t> sorted = ids_;
@@ -52,7 +66,7 @@ std::vector<Grain> Packing::grains() const {
   std::vector<Grain> all;
   all.reserve(size());
   for (std::size_t i = 0; i < slots(); ++i)
-    if (present(i)) all.push_back({ids_[i], position(i), held(i)});
+    if (present(i)) all.push_back(grain(i));
   std::sort(all.begin(), all.end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
   return all;
 }
@@ -61,7 +75,7 @@ Grain Packing::remove(std::uint32_t i) {
   unlist(i);
   cell_[i] = nowhere;
   ++removed_;
-  return {ids_[i], position(i), held(i)};
+  return grain(i);
 }
 
 void Packing::find_movable(const Vector3& point, double reach, std::vector<std::uint32_t>& found) const {
@@ -71,7 +85,8 @@ void Packing::find_movable(const Vector3& point, double reach, std::vector<std::
   // next one takes its place unless it counts.
   grid_.visit_near(point, reach + half_skin_, [&, x = x(), y = y(), z = z(), held = held_.data()](std::uint32_t i) {
     if (n == found.size()) found.resize(2 * n + 64);
-    const double dx = x[i] - point.x(), dy = y[i] - point.y(), dz = z[i] - point.z();
+    const double dx = periodic_.nearest(x[i] - point.x(), 0), dy = periodic_.nearest(y[i] - point.y(), 1),
+                 dz = z[i] - point.z();
     found[n] = i;
     n += (dx * dx + dy * dy + dz * dz <= reach_squared) & (held[i] == 0) ? 1 : 0;
   });
@@ -100,7 +115,7 @@ void Packing::sort(const Container& container) {
   }
   removed_ = 0;
   if (order.empty()) low = high = Vector3::Zero();
-  grid_ = CellGrid(low, high, diameter_ + 2.0 * half_skin_);
+  grid_ = CellGrid(low, high, diameter_ + 2.0 * half_skin_, periodic_);
   for (const std::uint32_t i : order) cell_[i] = grid_.cell_of(x_[i], y_[i], z_[i]);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return cell_[a] != cell_[b] ? cell_[a] < cell_[b] : ids_[a] < ids_[b];
@@ -109,6 +124,8 @@ void Packing::sort(const Container& container) {
   reorder(order, x_);
   reorder(order, y_);
   reorder(order, z_);
+  reorder(order, radii_);
+  reorder(order, volumes_);
   reorder(order, held_);
 
   const std::size_t n = order.size();
@@ -144,7 +161,8 @@ void Packing::list(std::uint32_t i, const Container& container) {
   reference_z_[i] = z_[i];
   const double reach = diameter_ + 2.0 * half_skin_;
   grid_.visit_near(position(i), reach, [&](std::uint32_t j) {
-    const double dx = reference_x_[j] - x_[i], dy = reference_y_[j] - y_[i], dz = reference_z_[j] - z_[i];
+    const double dx = periodic_.nearest(reference_x_[j] - x_[i], 0), dy = periodic_.nearest(reference_y_[j] - y_[i], 1),
+                 dz = reference_z_[j] - z_[i];
     if (dx * dx + dy * dy + dz * dz >= reach * reach) return;
     add_neighbour(i, j);
     add_neighbour(j, i);
@@ -157,7 +175,7 @@ void Packing::list(std::uint32_t i, const Container& container) {
 void Packing::mark_near_wall(std::uint32_t i, const Container& container) {
   // Where it was listed: the mark holds for as long as the list.
   WallContacts contacts;
-  container.contacts({reference_x_[i], reference_y_[i], reference_z_[i]}, 0.5 * diameter_ + half_skin_, contacts);
+  container.contacts({reference_x_[i], reference_y_[i], reference_z_[i]}, radii_[i] + half_skin_, contacts);
   near_wall_[i] = contacts.begin() != contacts.end() ? 1 : 0;
 }
 
@@ -184,33 +202,31 @@ void Packing::lengthen_lists() {
   list_capacity_ = capacity;
 }
 
-void Packing::find_deeper_overlap(std::uint32_t i, double& least_squared, Overlap& overlap) const {
+void Packing::find_deeper_overlap(std::uint32_t i, Overlap& overlap) const {
   const auto [first, last] = neighbours(i);
   for (const std::uint32_t* j = first; j != last; ++j) {
-    const double squared = distance_squared(i, position(*j));
-    if (squared >= least_squared) continue;
-    least_squared = squared;
-    overlap = {1.0 - std::sqrt(squared) / diameter_, std::min(ids_[i], ids_[*j]), std::max(ids_[i], ids_[*j])};
+    const double squared = distance_squared(i, position(*j)), touching = radii_[i] + radii_[*j];
+    if (squared >= touching * touching) continue;
+    const double depth = 1.0 - std::sqrt(squared) / touching;
+    if (depth > overlap.depth) overlap = {depth, std::min(ids_[i], ids_[*j]), std::max(ids_[i], ids_[*j])};
   }
 }
 
 Overlap Packing::largest_overlap() const {
   Overlap largest;
-  double least_squared = diameter_ * diameter_;
-  for (std::uint32_t i = 0; i < slots(); ++i) find_deeper_overlap(i, least_squared, largest);
+  for (std::uint32_t i = 0; i < slots(); ++i) find_deeper_overlap(i, largest);
   return largest;
 }
 
 Overlap Packing::largest_overlap(const std::vector<std::uint32_t>& grains) const {
   Overlap largest;
-  double least_squared = diameter_ * diameter_;
-  for (const std::uint32_t i : grains) find_deeper_overlap(i, least_squared, largest);
+  for (const std::uint32_t i : grains) find_deeper_overlap(i, largest);
   return largest;
 }
 
 std::size_t Packing::memory() const {
-  return bytes_in(ids_, x_, y_, z_, reference_x_, reference_y_, reference_z_, held_, near_wall_, cell_, neighbours_,
-                  list_size_, wandered_) +
+  return bytes_in(ids_, x_, y_, z_, radii_, volumes_, reference_x_, reference_y_, reference_z_, held_, near_wall_,
+                  cell_, neighbours_, list_size_, wandered_) +
          grid_.memory();
 }
 

@@ -10,7 +10,7 @@
 
 namespace spot {
 
-// Places in quanta, in 32 bits that wrap around; see TiledPacking.
+// Places in quanta, in 32 bits that wrap around; see CellLattice.
 
 inline std::int32_t wrap(std::int64_t quanta) { return static_cast<std::int32_t>(static_cast<std::uint64_t>(quanta)); }
 inline std::int32_t add(std::int32_t a, std::int32_t b) { return wrap(static_cast<std::int64_t>(a) + b); }
@@ -18,6 +18,13 @@ inline std::int32_t minus(std::int32_t a, std::int32_t b) { return wrap(static_c
 
 inline Point minus(const Point& a, const Point& b) {
   return {minus(a.x, b.x), minus(a.y, b.y), minus(a.z, b.z), Point::free};
+}
+
+/// Leaves the state of `to` alone.
+inline void add(Point& to, const Point& by) {
+  to.x = add(to.x, by.x);
+  to.y = add(to.y, by.y);
+  to.z = add(to.z, by.z);
 }
 
 inline constexpr Point nobody = {0, 0, 0, Point::empty};

@@ -11,21 +11,23 @@ Relaxation::Relaxation(const RelaxationParameters& parameters) : parameters_(par
 double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, Push& push) const {
   const double *x = packing.x(), *y = packing.y(), *z = packing.z();
   const double xi = x[i], yi = y[i], zi = z[i];
-  const double d = packing.diameter(), parted = parameters_.distance_in_contact(d);
+  const double radius = packing.radius(i);
   const Quantum& quantum = packing.quantum();
-  double least = d * d;
+  const Periodic& periodic = packing.periodic();
+  double deepest = 0.0;
   const auto [first, last] = packing.neighbours(i);
   for (const std::uint32_t* j = first; j != last; ++j) {
-    const double dx = xi - x[*j], dy = yi - y[*j], dz = zi - z[*j];
+    const double dx = periodic.nearest(xi - x[*j], 0), dy = periodic.nearest(yi - y[*j], 1), dz = zi - z[*j];
     const double squared = dx * dx + dy * dy + dz * dz;
-    if (squared >= d * d) continue;
-    least = std::min(least, squared);
+    const double touching = radius + packing.radius(*j);
+    if (squared >= touching * touching) continue;
+    const double distance = std::sqrt(squared), parted = parameters_.distance_in_contact(touching);
+    deepest = std::max(deepest, 1.0 - distance / touching);
     if (squared >= parted * parted) continue;
     const double share = is_movable_[*j] ? parameters_.pair_share() : parameters_.fixed_share();
-    const double distance = std::sqrt(squared);
     if (distance == 0.0) {
       // Centres that coincide have no line between them; part them along x, by id so that both agree.
-      push.x += quantum.round(packing.id(i) < packing.id(*j) ? -share * d : share * d);
+      push.x += quantum.round(packing.id(i) < packing.id(*j) ? -share * touching : share * touching);
       continue;
     }
     const double scale = share * (parted - distance) / distance;
@@ -34,11 +36,11 @@ double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, 
     push.y += quantum.round(scale * dy);
     push.z += quantum.round(scale * dz);
   }
-  return least;
+  return deepest;
 }
 
 void Relaxation::push_off_walls(const Packing& packing, const Container& container, std::uint32_t i, Push& push) {
-  const double radius = 0.5 * packing.diameter();
+  const double radius = packing.radius(i);
   const Quantum& quantum = packing.quantum();
   container.contacts(packing.position(i), radius, contacts_);
   for (const WallContact& contact : contacts_) {
@@ -53,9 +55,9 @@ double Relaxation::sweep(Packing& packing, const Container& container, const std
   is_movable_.resize(packing.slots());
   for (const std::uint32_t i : movable) is_movable_[i] = 1;
   pushes_.assign(movable.size(), Push());
-  double least = packing.diameter() * packing.diameter();
+  double deepest = 0.0;
   for (std::size_t k = 0; k < movable.size(); ++k) {
-    least = std::min(least, push_off_neighbours(packing, movable[k], pushes_[k]));
+    deepest = std::max(deepest, push_off_neighbours(packing, movable[k], pushes_[k]));
     if (packing.near_wall(movable[k])) push_off_walls(packing, container, movable[k], pushes_[k]);
   }
   for (std::size_t k = 0; k < movable.size(); ++k) {
@@ -63,7 +65,7 @@ double Relaxation::sweep(Packing& packing, const Container& container, const std
     if (pushes_[k].x != 0.0 || pushes_[k].y != 0.0 || pushes_[k].z != 0.0)
       packing.move(movable[k], pushes_[k].x, pushes_[k].y, pushes_[k].z);
   }
-  return 1.0 - std::sqrt(least) / packing.diameter();
+  return deepest;
 }
 
 }  // namespace spot

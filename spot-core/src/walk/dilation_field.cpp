@@ -7,6 +7,7 @@
 
 #include "spot/base/errors.hpp"
 #include "spot/base/memory.hpp"
+#include "spot/walk/calibration.hpp"
 
 namespace spot {
 
@@ -93,10 +94,10 @@ void DilationField::count(const std::vector<Vector3>& spots, Communicator& commu
   for (const Vector3& spot : spots)
     for (const Corner& corner : corners(spot)) counts_[place(corner.node)] += corner.weight;
   counts_ = communicator.sum(std::move(counts_));
-  look_volumes_up();
+  find_volumes();
 }
 
-void DilationField::look_volumes_up() {
+void DilationField::find_volumes() {
   counted_volumes_.resize(counts_.size());
   Node node;
   for (node[2] = low_[2]; node[2] < high_[2]; ++node[2])
@@ -134,15 +135,15 @@ double DilationField::at(const Vector3& point) const {
   return volume > 0.0 ? spots / whole * spot_volume_ / volume : std::numeric_limits<double>::infinity();
 }
 
-double DilationField::pace(const Vector3& point) const {
+double DilationField::relative_speed(const Vector3& point) const {
   const double ratio = at(point) / reference_;
-  return std::clamp(ratio * ratio, slowest, fastest);
+  return std::clamp(ratio * ratio, calibration::slowest_relative_speed, calibration::fastest_relative_speed);
 }
 
 void DilationField::replace_container(const Container& container) {
   container_ = &container;
   volumes_.clear();
-  look_volumes_up();
+  find_volumes();
 }
 
 void DilationField::save(Bytes& bytes) const {
@@ -159,7 +160,7 @@ void DilationField::restore(ByteReader& saved) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     nodes *= static_cast<std::size_t>(std::max<std::int64_t>(0, std::int64_t{high_[axis]} - low_[axis]));
   if (counts_.size() != nodes) throw InvalidState("the saved counts of spots are damaged");
-  look_volumes_up();
+  find_volumes();
 }
 
 std::size_t DilationField::memory() const {

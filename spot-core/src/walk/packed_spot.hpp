@@ -2,6 +2,8 @@
 // How spots and moves go into messages and saved states.
 #pragma once
 
+#include <vector>
+
 #include "spot/base/bytes.hpp"
 #include "spot/walk/spot_walk.hpp"
 
@@ -12,9 +14,9 @@ inline void append(Bytes& bytes, const Spot& spot) {
   append(bytes, spot.steps);
   append(bytes, spot.position);
   append(bytes, spot.next_step);
-  append(bytes, spot.turn);
+  append(bytes, spot.direction);
   append(bytes, spot.chance);
-  append(bytes, spot.pace);
+  append(bytes, spot.relative_speed);
 }
 
 inline Spot take_spot(ByteReader& reader) {
@@ -23,10 +25,21 @@ inline Spot take_spot(ByteReader& reader) {
   spot.steps = reader.take<std::int64_t>();
   spot.position = reader.take<Vector3>();
   spot.next_step = reader.take<double>();
-  spot.turn = reader.take<double>();
+  spot.direction = reader.take<double>();
   spot.chance = reader.take<double>();
-  spot.pace = reader.take<double>();
+  spot.relative_speed = reader.take<double>();
   return spot;
+}
+
+inline void append(Bytes& bytes, const std::vector<Spot>& spots) {
+  append(bytes, static_cast<std::uint64_t>(spots.size()));
+  for (const Spot& spot : spots) append(bytes, spot);
+}
+
+inline std::vector<Spot> take_spots(ByteReader& reader) {
+  std::vector<Spot> spots;
+  for (auto n = reader.take<std::uint64_t>(); n > 0; --n) spots.push_back(take_spot(reader));
+  return spots;
 }
 
 inline void append(Bytes& bytes, const Move& move) {

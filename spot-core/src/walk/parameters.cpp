@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include "spot/base/elementary.hpp"
 #include "spot/base/errors.hpp"
-#include "spot/walk/dilation_field.hpp"
+#include "spot/walk/calibration.hpp"
 
 namespace spot {
 
@@ -23,19 +22,19 @@ void require_positive(const char* name, double value) {
 
 double SpotParameters::spot_volume(double packing_fraction) const {
   const double pi = 3.14159265358979323846;
-  return influence * mean_share() * packing_fraction * 4.0 / 3.0 * pi * radius * radius * radius;
+  return influence * profile->mean_share() * packing_fraction * 4.0 / 3.0 * pi * radius * radius * radius;
 }
 
 double SpotParameters::missing_volume(double diameter) const {
   const double pi = 3.14159265358979323846;
-  return fixed_volume > 0.0 ? influence * fixed_volume * pi / 6.0 * diameter * diameter * diameter : spot_volume(0.58);
+  return fixed_volume > 0.0 ? influence * fixed_volume * pi / 6.0 * diameter * diameter * diameter
+                            : spot_volume(calibration::packing_fraction_of_flow);
 }
 
-double SpotParameters::fastest() const { return dilation > 0.0 ? speed * DilationField::fastest : speed; }
-
-double SpotParameters::equivalent_radius() const { return radius * cbrt(mean_share()); }
+double SpotParameters::fastest() const { return dilation > 0.0 ? speed * calibration::fastest_relative_speed : speed; }
 
 void SpotParameters::validate() const {
+  if (!profile) throw InvalidParameter("spots need an influence profile");
   require_positive("spot radius", radius);
   require_positive("spot influence", influence);
   if (influence >= 1.0) throw InvalidParameter(message("spot influence is ", influence, " but must be below 1"));

@@ -65,32 +65,33 @@ Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) c
 
 void SpotWalk::draw_next_step(Spot& spot) const {
   const auto numbers = numbers_of_step(parameters_, spot);
-  if (spot.steps == 0 || numbers[3] >= parameters_.persistence) spot.turn = numbers[1];
+  if (spot.steps == 0 || numbers[3] >= parameters_.persistence) spot.direction = numbers[1];
   spot.chance = numbers[2];
   const double mean = parameters_.mean_waiting_time();
   if (!parameters_.together)
-    spot.next_step += exponential(numbers[0], parameters_.move_rate()) / spot.pace;
+    spot.next_step += exponential(numbers[0], parameters_.move_rate()) / spot.relative_speed;
   else if (spot.steps == 0)
     spot.next_step = (std::floor(spot.next_step / mean) + 1.0) * mean;
   else
     spot.next_step = std::nearbyint(spot.next_step / mean + 1.0) * mean;
 }
 
-void SpotWalk::set_pace(Spot& spot, double time, double pace) const {
-  spot.next_step = time + (spot.next_step - time) * (spot.pace / pace);
-  spot.pace = pace;
+void SpotWalk::set_relative_speed(Spot& spot, double time, double relative_speed) const {
+  spot.next_step = time + (spot.next_step - time) * (spot.relative_speed / relative_speed);
+  spot.relative_speed = relative_speed;
 }
 
 Move SpotWalk::step(Spot& spot, const Container& container) const {
   Move move;
   move.time = spot.next_step;
   move.spot = spot.id;
-  const Vector3 start = spot.position, target = start + step_vector(parameters_, spot.turn);
+  const Vector3 start = spot.position, target = start + step_vector(parameters_, spot.direction);
   spot.position = container.keep_spot_inside(start, target);
   // A spot that a wall has reflected goes on away from it, if it goes on its way.
-  if (spot.position != target) spot.turn = opposite(spot.turn);
+  if (spot.position != target) spot.direction = opposite(spot.direction);
   move.middle = 0.5 * (start + spot.position);
   move.step = spot.position - start;
+  spot.position = container.periodic().wrap(spot.position);
   move.number = ++spot.steps;
   move.chance = spot.chance;
   draw_next_step(spot);

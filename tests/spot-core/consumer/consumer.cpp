@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A project outside that uses the installed library.
 #include <spot/drivers/time_ordered_drainage.hpp>
+#include <spot/geometry/silos.hpp>
 
 int main() {
   spot::SpotParameters spots;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +9,8 @@
 
 #include "spot/base/bytes.hpp"
 #include "spot/base/quantum.hpp"
+#include "spot/drivers/counters.hpp"
+#include "spot/drivers/limits.hpp"
 #include "spot/geometry/container.hpp"
 #include "spot/packing/displacement.hpp"
 #include "spot/packing/packing.hpp"
@@ -18,34 +19,11 @@
 
 namespace spot {
 
-/// What has happened since the start.
-struct Counters {
-  std::int64_t moves = 0;         ///< spot steps
-  std::int64_t shares_moved = 0;  ///< shares in them of the grains that they enclosed, in 1024ths of a grain
-  std::int64_t sweeps = 0;        ///< relaxation sweeps, over one region (time-ordered) or all that was due (windowed)
-  std::int64_t grains_swept = 0;  ///< grains in them, each counted every time
-  std::int64_t drained = 0;       ///< grains that left below the outlet
-
-  /// <N>: grains that a move of a spot influences, each counted by its share, on average.
-  double grains_per_move() const {
-    return moves == 0 ? 0.0 : static_cast<double>(shares_moved) / (static_cast<double>(moves) * whole_share);
-  }
-};
-
 /// What somebody else has done to the grains. One that was moved, or is held now and was not, is among both.
 /// Each is named by one rank, whichever.
 struct GrainChanges {
   std::vector<std::int64_t> gone;  ///< ids
   std::vector<Grain> come;
-};
-
-/// How a drainage starts and ends.
-struct DrainageLimits {
-  double outlet;                  ///< grains with centres below this height are taken out (length)
-  double largest_overlap = 0.03;  ///< allowed in the starting packing, in diameters
-  /// What relaxation may leave behind in flow, in diameters, if no more was allowed at the start. DEM has 0.013, the
-  /// spot model 0.03 with the fitted parameters; at 0.3 a packing collapses.
-  double largest_overlap_in_flow = 0.3;
 };
 
 /// A packing that drains as spots climb through it: what all drivers have in common.
@@ -67,7 +45,7 @@ class Drainage {
   void replace_grains(const std::vector<Grain>& grains);
 
   /// Goes on with other walls; grains that are outside them are found by require_inside().
-  virtual void replace_container(std::shared_ptr<const Container> container) = 0;
+  void replace_container(std::shared_ptr<const Container> container);
 
   /// Goes on with another number of threads, where the driver has any. Throws InvalidParameter as Workers does.
   virtual void set_threads(int) {}
@@ -103,6 +81,7 @@ class Drainage {
   std::vector<Grain> take_drained();
 
   /// Counts from now on how many moves move each grain, which is not free.
+  /// `enclosed`: grain volume (1024 = grain_volume).
   void count_moves_received() { received_.emplace(); }
 
   /// What was counted since the last call, on this rank. A grain that came from another rank has been counted there,
@@ -118,35 +97,44 @@ class Drainage {
   /// deeply.
   void require_valid_start();
 
+  const SpotParameters& spot_parameters() const { return spots_; }
+  const RelaxationParameters& relaxation_parameters() const { return relaxation_; }
+  const DrainageLimits& limits() const { return checks_.limits(); }
+  const GrainChecks& checks() const { return checks_; }
+  const Container& container() const { return *container_; }
+  double diameter() const { return diameter_; }
+  MovesReceived* received() { return received_ ? &*received_ : nullptr; }
+
+  /// `enclosed`: grain volume (1024 = grain_volume).
+  void count_move(std::int64_t enclosed) {
+    ++counters_.moves;
+    counters_.volume_moved += enclosed;
+  }
+  void count_sweep(std::size_t grains) {
+    ++counters_.sweeps;
+    counters_.grains_swept += static_cast<std::int64_t>(grains);
+  }
+  /// Goes on counting from a saved state.
+  void set_counters(const Counters& counters) { counters_ = counters; }
+
+  /// Grains have left below the outlet.
+  void add_drained(const std::vector<Grain>& grains);
+
+ private:
   /// Carries out what change_grains() has checked; returns the largest overlap of a grain that came, as it came.
   virtual Overlap carry_out(const GrainChanges& changes) = 0;
 
-  const Container& container() const { return *container_; }
-  MovesReceived* received() { return received_ ? &*received_ : nullptr; }
+  /// There are other walls now.
+  virtual void take_new_container() = 0;
 
-  /// Largest overlap that may stand after a relaxation, in diameters.
-  double overlap_allowed() const { return std::max(limits_.largest_overlap, limits_.largest_overlap_in_flow); }
-
-  /// Throws CollapsedPacking, naming the grains, if they overlap more deeply than that.
-  void require_no_collapse(const Overlap& largest) const;
-
-  /// Throws CollapsedPacking if one of drained_, from this index on, left through a wall instead of the orifice.
-  void require_left_through_orifice(std::size_t first) const;
-
-  SpotParameters parameters_;
-  RelaxationParameters relaxation_parameters_;
-  DrainageLimits limits_;
+  SpotParameters spots_;
+  RelaxationParameters relaxation_;
   std::shared_ptr<const Container> container_;
   double diameter_;
+  GrainChecks checks_;
   Counters counters_;
   std::vector<Grain> drained_;
   std::optional<MovesReceived> received_;  // if they are counted
-
- private:
-  void require_inside(const Grain& grain, double lowest, double reach) const;
-  double depth_in_walls(const Grain& grain) const;
-  void require_off_walls(const Overlap& deepest, const char* when) const;
-  void require_shallow(const Overlap& largest, const char* when) const;
 };
 
 }  // namespace spot

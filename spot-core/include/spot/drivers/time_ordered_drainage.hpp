@@ -9,7 +9,7 @@
 #include "spot/packing/packing.hpp"
 #include "spot/packing/tiled_packing.hpp"
 #include "spot/relaxation/relaxation.hpp"
-#include "spot/walk/spot_population.hpp"
+#include "spot/walk/spots.hpp"
 
 namespace spot {
 
@@ -28,13 +28,12 @@ class TimeOrderedDrainage : public Drainage {
 
   Bytes save() const override;
   void advance_to(double time) override;
-  void replace_container(std::shared_ptr<const Container> container) override;
   void visit_grains(const std::function<void(const Grain&)>& visit) const override;
   const Quantum& quantum() const override { return packing_.quantum(); }
-  std::vector<Spot> spots() const override { return population_.spots(); }
+  std::vector<Spot> spots() const override { return spots_.live(); }
   Overlap largest_overlap() override;
   std::size_t memory() const override {
-    return packing_.memory() + relaxation_.memory() + bytes_in(population_.spots(), near_);
+    return packing_.memory() + relaxation_.memory() + spots_.memory() + bytes_in(near_);
   }
 
   const Packing& packing() const { return packing_; }
@@ -42,20 +41,22 @@ class TimeOrderedDrainage : public Drainage {
  private:
   TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
                       std::shared_ptr<const Container> container, double diameter, double extent, ByteReader saved);
+  void require_same_periods() const;
   Overlap carry_out(const GrainChanges& changes) override;
+  void take_new_container() override;
   void let_settle(TiledPacking& packing, bool everybody);
   void carry_out(Move move);
   bool relaxes_around(const Move& move) const;
   /// As in 2006. The other schedules are there to see what comes of less, and may let the packing collapse.
   bool relaxes_every_move() const {
-    return relaxation_parameters_.schedule == RelaxationSchedule::moves && relaxation_parameters_.every == 1;
+    return relaxation_parameters().schedule == RelaxationSchedule::moves && relaxation_parameters().every == 1;
   }
   void relax(const std::vector<std::uint32_t>& grains);
   void relax_everywhere();
   void take_out_drained();
 
   Packing packing_;
-  SpotPopulation population_;
+  Spots spots_;
   Relaxation relaxation_;
   std::int64_t relaxed_everywhere_ = 0;  // times
   std::vector<std::uint32_t> near_;      // grains around a move; kept to save allocations

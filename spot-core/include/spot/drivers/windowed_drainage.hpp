@@ -6,9 +6,11 @@
 
 #include "spot/base/bytes.hpp"
 #include "spot/drivers/drainage.hpp"
+#include "spot/drivers/shared_moves.hpp"
 #include "spot/packing/tiled_packing.hpp"
 #include "spot/parallel/communicator.hpp"
-#include "spot/walk/dilation_field.hpp"
+#include "spot/relaxation/cell_relaxation.hpp"
+#include "spot/walk/spots.hpp"
 
 namespace spot {
 
@@ -23,7 +25,8 @@ namespace spot {
 /// With a fixed volume, moves are weighed by what they enclose before the first move of their window.
 ///
 /// Several ranks can share the grains and the spots: a spot belongs to the rank whose layers it is in. Once in a window
-/// its moves go to all ranks whose grains they may reach, the shares of these come back, and weights go out.
+/// its moves go to all ranks whose grains they may reach, what they enclose there comes back, and weights go out
+/// (SharedMoves).
 /// Constructors, advance_to(), change_grains() and total() are collective then.
 class WindowedDrainage : public Drainage {
  public:
@@ -43,11 +46,10 @@ class WindowedDrainage : public Drainage {
 
   Bytes save() const override;
   void advance_to(double time) override;
-  void replace_container(std::shared_ptr<const Container> container) override;
   void set_threads(int threads) override { workers_ = std::make_unique<Workers>(threads); }
   void visit_grains(const std::function<void(const Grain&)>& visit) const override { packing_.visit_grains(visit); }
   const Quantum& quantum() const override { return packing_.quantum(); }
-  std::vector<Spot> spots() const override;
+  std::vector<Spot> spots() const override { return spots_.live(); }
   Overlap largest_overlap() override { return packing_.largest_overlap(); }
   std::size_t memory() const override;
   Counters total() override;
@@ -59,58 +61,39 @@ class WindowedDrainage : public Drainage {
   double due() const { return due_; }
 
  private:
-  /// A spot that this rank moves.
-  struct Walker {
-    Spot spot;
-    bool removed;
-  };
-
-  /// A move that may reach grains of this rank, or that one of its spots has made.
-  struct Turn {
-    Move move;
-    int owner;   // rank to which the spot belongs after the window
-    int shares;  // of the grains that it encloses, as far as is known
-  };
-
   Overlap carry_out(const GrainChanges& changes) override;
   static double moves_until_due(const SpotParameters& spots, double tolerance, double diameter);
   static double positive_window(double window);
   /// Throws InvalidParameter if relaxation could not follow what spots do in a window.
   void require_fitting_window() const;
-  bool here(const Vector3& position) const { return packing_.owner(position.z()) == communicator_->rank(); }
-  void set_paces(double now);
-  void give_birth(double until);
-  void walk(double until);
-  void share_turns();
-  void hand_over(std::vector<Bytes>& outgoing);
+  int owner(const Spot& spot) const { return packing_.owner(spot.position.z()); }
+  bool here(const Spot& spot) const { return owner(spot) == communicator_->rank(); }
+  std::pair<int, int> reached(const Move& move) const {
+    return packing_.reached(move.middle.z(), spot_parameters().radius);
+  }
+  void take_new_container() override;
+  void step_to(double until);
   void displace();
-  void weigh(const std::vector<int>& shares, std::vector<Move>& moves);
-  void gather_shares();
-  void send_weights();
-  Turn& turn_of(std::int64_t spot, std::int64_t number);
-  void settle();
+  void weigh(const std::vector<int>& enclosed, std::vector<Move>& moves);
+  void remove_spots_above();
   void let_settle(bool everybody);
   void relax();
-  void drop_removed();
+  void take_out_drained();
   std::vector<Bytes> read(const std::vector<Bytes>& saved);
-  void keep_own_spots();
 
   std::shared_ptr<Communicator> communicator_;
   std::unique_ptr<Workers> workers_;
   double window_;
   double due_;
   // What read() sets stands before the packing.
-  std::vector<Walker> walkers_;  // in order of birth
-  std::size_t removed_ = 0;
-  std::int64_t born_ = 0, windows_ = 0;
-  double next_birth_ = 0.0;
+  Spots spots_;
+  std::int64_t windows_ = 0;
   TiledPacking packing_;
-  SpotWalk walk_;
-  DilationField dilation_;
+  CellRelaxation relaxation_;
 
   // Of the window at hand.
-  std::vector<Turn> turns_;  // in the order of (spot, number)
-  std::vector<Move> moves_;  // the same
+  SharedMoves moves_;
+  std::vector<Move> displacing_;  // the same
 };
 
 }  // namespace spot

@@ -7,6 +7,7 @@
 
 #include "spot/packing/packing.hpp"
 #include "spot/packing/point.hpp"
+#include "spot/walk/grain_volume.hpp"
 #include "spot/walk/move.hpp"
 #include "spot/walk/parameters.hpp"
 
@@ -15,25 +16,23 @@ namespace spot {
 /// How many moves have moved a grain, by its id.
 using MovesReceived = std::unordered_map<std::int64_t, std::int64_t>;
 
-/// The part of a spot's volume that is above the outlet, z radii below its middle: 1/2 + 3 z / 4 - z^3 / 4 if it is
-/// uniform (2010, section 3.3), 1/2 + 15/16 (z - 2 z^3 / 3 + z^5 / 5) if it is parabolic.
-double part_above_outlet(InfluenceProfile profile, double z);
-
-/// The weight of a move whose spot, with its middle at `height` above the outlet, encloses grains with so many shares,
-/// when spots carry a fixed volume: N part / max(grains, 20), where `part` of the spot is above the outlet (2010,
-/// section 3.3). 1 if the parameters say that they don't.
-double fixed_volume_weight(const SpotParameters& parameters, double height, int shares);
+/// The weight of a move whose spot, with its middle at `height` above the outlet, encloses this grain volume (1024 =
+/// grain_volume), when spots carry a fixed one: N part / max(grains, 20), where `part` of the spot is above the outlet
+/// and volumes are in those of a grain of the reference diameter (2010, section 3.3). 1 if the parameters say that they
+/// don't.
+double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed);
 
 /// No weight is larger.
 double largest_weight(const SpotParameters& parameters);
 
-/// The shares that the given grains have in a move, together.
-int enclosed_shares(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
+/// The volume of the given grains that a move encloses, each counted by its share of the influence (1024 =
+/// grain_volume).
+int enclosed_volume(const Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move,
                     const SpotParameters& spots);
 
 /// Moves every one of the given grains with its centre within R_s of the move's middle by its share of
-/// -weight * influence * step, rounded to the quantum (2006, eq. 1). Returns their shares together, and
-/// counts the move for each of them in `received`, if there is one.
+/// -weight * influence * step, rounded to the quantum (2006, eq. 1). Returns the volume that the move
+/// encloses, and counts the move for each of them in `received`, if there is one.
 int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const Move& move, const SpotParameters& spots,
              MovesReceived* received = nullptr);
 

@@ -9,48 +9,41 @@
 #include "spot/base/quantum.hpp"
 #include "spot/geometry/container.hpp"
 #include "spot/packing/cell_grid.hpp"
+#include "spot/packing/grain.hpp"
 
 namespace spot {
 
-/// One grain as it goes into and comes out of a packing.
-struct Grain {
-  std::int64_t id;  ///< 0 or more
-  Vector3 position;
-  bool held = false;  ///< an obstacle: never moves, others are pushed off it
-
-  bool operator==(const Grain& other) const {
-    return id == other.id && position == other.position && held == other.held;
-  }
-};
-
-/// The largest overlap of two grains and whose it is.
-struct Overlap {
-  double depth = 0.0;  ///< 1 - distance / diameter; 0 when no two grains overlap
-  std::int64_t first = 0, second = 0;
-};
-
-/// Equal spheres and the lists of their neighbours.
+/// Spheres and the lists of their neighbours.
 ///
 /// Layout: structure of arrays. Every grain has a *reference*, the place where it was listed last; cells and
 /// lists follow from the references alone: j is a neighbour of i exactly if their references are closer than
-/// diameter + skin. A grain that has wandered half the skin from its reference is listed anew, by itself,
+/// the largest diameter + skin. A grain that has wandered half the skin from its reference is listed anew, by itself,
 /// in `refresh()`; so lists hold every pair in contact, and grains that do not move cost nothing.
 ///
-/// Positions are multiples of `quantum()`; nothing computed here depends on the order of the grains.
+/// Positions are multiples of `quantum()`; nothing computed here depends on the order of the grains. The quantum
+/// follows from the largest grains and is at most 1e-6 of their diameter: of grains half as wide it is at most 2e-6,
+/// still far below any overlap that matters.
+///
+/// Where space repeats, grains are kept in its cell, whose ends are multiples of the quantum too, and distances are
+/// those to the nearest image.
 class Packing {
  public:
-  /// `extent` is the largest coordinate (absolute value) a grain may ever have; it sets the quantum.
-  /// Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, or an id is negative
-  /// or occurs twice.
-  Packing(double diameter, double extent, const std::vector<Grain>& grains);
+  /// `diameter`: of the largest grains. `extent` is the largest coordinate (absolute value) a grain may ever have; both
+  /// set the quantum. Throws InvalidPacking that names the grain if a position is not finite or beyond the extent, a
+  /// radius is not as radius_in() has it, or an id is negative or occurs twice. Throws InvalidContainer if space
+  /// repeats after less than 4 diameters or its cell is beyond the extent.
+  Packing(double diameter, double extent, const std::vector<Grain>& grains, const Periodic& periodic = {});
 
   double diameter() const { return diameter_; }
   double extent() const { return extent_; }
   const Quantum& quantum() const { return quantum_; }
+  /// Its ends are multiples of the quantum.
+  const Periodic& periodic() const { return periodic_; }
   std::size_t size() const { return ids_.size() - removed_; }
 
   /// All grains, in increasing order of ids.
   std::vector<Grain> grains() const;
+  Grain grain(std::size_t i) const { return {ids_[i], position(i), held(i), radii_[i]}; }
 
   /// Sorts the grains in memory when that has become worth while; indices change, lists are up to date.
   void refresh(const Container& container) {
@@ -71,6 +64,9 @@ class Packing {
   bool present(std::size_t i) const { return cell_[i] != nowhere; }
   std::int64_t id(std::size_t i) const { return ids_[i]; }
   Vector3 position(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
+  double radius(std::size_t i) const { return radii_[i]; }
+  /// As volume_parts() has it.
+  int volume(std::size_t i) const { return volumes_[i]; }
   bool held(std::size_t i) const { return held_[i] != 0; }
   bool near_wall(std::size_t i) const { return near_wall_[i] != 0; }
   const double* x() const { return x_.data(); }
@@ -84,7 +80,8 @@ class Packing {
   }
 
   double distance_squared(std::size_t i, const Vector3& point) const {
-    const double x = x_[i] - point.x(), y = y_[i] - point.y(), z = z_[i] - point.z();
+    const double x = periodic_.nearest(x_[i] - point.x(), 0), y = periodic_.nearest(y_[i] - point.y(), 1),
+                 z = z_[i] - point.z();
     return x * x + y * y + z * z;
   }
 
@@ -94,10 +91,11 @@ class Packing {
 
   /// Moves grain i by a displacement whose components are multiples of the quantum.
   void move(std::uint32_t i, double dx, double dy, double dz) {
-    x_[i] += dx;
-    y_[i] += dy;
+    x_[i] = periodic_.wrap(x_[i] + dx, 0);
+    y_[i] = periodic_.wrap(y_[i] + dy, 1);
     z_[i] += dz;
-    const double ex = x_[i] - reference_x_[i], ey = y_[i] - reference_y_[i], ez = z_[i] - reference_z_[i];
+    const double ex = periodic_.nearest(x_[i] - reference_x_[i], 0), ey = periodic_.nearest(y_[i] - reference_y_[i], 1),
+                 ez = z_[i] - reference_z_[i];
     if (ex * ex + ey * ey + ez * ez > half_skin_ * half_skin_) wandered_.push_back(i);
   }
 
@@ -121,15 +119,17 @@ class Packing {
   void unlist(std::uint32_t i);
   void list(std::uint32_t i, const Container& container);
   void mark_near_wall(std::uint32_t i, const Container& container);
-  void find_deeper_overlap(std::uint32_t i, double& least_squared, Overlap& overlap) const;
+  void find_deeper_overlap(std::uint32_t i, Overlap& overlap) const;
   void add_neighbour(std::uint32_t i, std::uint32_t j);
   void lengthen_lists();
 
   double diameter_, extent_;
   Quantum quantum_;
+  Periodic periodic_;
   double half_skin_;
   std::vector<std::int64_t> ids_;
-  std::vector<double> x_, y_, z_;
+  std::vector<double> x_, y_, z_, radii_;
+  std::vector<std::uint16_t> volumes_;
   std::vector<double> reference_x_, reference_y_, reference_z_;
   std::vector<char> held_, near_wall_;
   std::size_t removed_ = 0;

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "spot/walk/grain_volume.hpp"
+
 namespace spot {
 
 /// A place on the grid of the quantum, as the vector kernels load it: a quarter of a cache line.
@@ -21,9 +23,6 @@ struct alignas(16) Point {
   static constexpr std::int32_t free = 0, due = 1, falling = due, resting = 2, laid = 3, held = 1 << 29,
                                 empty = 1 << 30;
 };
-
-/// Shares of grains in moves are counted in so many parts, so that sums are exact.
-constexpr int whole_share = 1024;
 
 /// Whom a move reaches: the share of a free point is (radius^2 - r^2) per_square, but no more than 1.
 struct Reach {

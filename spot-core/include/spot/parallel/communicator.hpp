@@ -36,6 +36,11 @@ class Communicator {
   using Pair = std::array<std::int64_t, 2>;
   virtual Pair first(Pair pair) = 0;
 
+  /// The same bytes go to all ranks; returns those of each.
+  std::vector<Bytes> share_with_all(const Bytes& own) {
+    return exchange(std::vector<Bytes>(static_cast<std::size_t>(size()), own));
+  }
+
   std::int64_t sum(std::int64_t value) { return sum(std::vector<std::int64_t>{value})[0]; }
 };
 

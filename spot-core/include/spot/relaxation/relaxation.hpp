@@ -23,7 +23,7 @@ class Relaxation {
   const RelaxationParameters& parameters() const { return parameters_; }
 
   /// The packing's lists must be up to date; no grain may occur twice. Returns the largest overlap of two grains that
-  /// it found, in diameters.
+  /// it found, over the sum of their radii.
   double sweep(Packing& packing, const Container& container, const std::vector<std::uint32_t>& movable);
 
   std::size_t memory() const { return bytes_in(is_movable_, pushes_); }
@@ -33,7 +33,7 @@ class Relaxation {
     double x = 0.0, y = 0.0, z = 0.0;
   };
 
-  /// Returns the least squared distance to a neighbour that overlaps, or the square of the diameter.
+  /// Returns the largest overlap with a neighbour, or 0.
   double push_off_neighbours(const Packing& packing, std::uint32_t grain, Push& push) const;
   void push_off_walls(const Packing& packing, const Container& container, std::uint32_t grain, Push& push);
 

@@ -18,17 +18,15 @@ namespace spot {
 ///
 /// A packing at rest has to dilate before it can flow, and in DEM one that flows is dilated by about as much
 /// everywhere, 0.03, however fast it flows. So a spot climbs the faster the more the packing is dilated where it is: at
-/// v_s (c / c_0)^2, with c_0 = SpotParameters::dilation, but at 1/8 to 4 times v_s. That is its *pace*. A flow that
-/// brings more spots then has hardly more of them at a time, and starts narrow and fast, and widens as its sides
-/// dilate.
+/// v_s (c / c_0)^2, with c_0 = SpotParameters::dilation, within bounds (calibration.hpp). That is its *relative speed*.
+/// A flow that brings more spots then has hardly more of them at a time, and starts narrow and fast, and widens as its
+/// sides dilate.
 ///
 /// Spots are counted on the nodes of a cubic lattice R_s apart, but no closer than grains are; each is shared out
 /// between the eight nodes around it in proportion to its nearness to them along each axis, in whole 2^-24ths: sums are
 /// the same on any ranks.
 class DilationField {
  public:
-  static constexpr double slowest = 0.125, fastest = 4.0;
-
   /// `diameter`: of grains. The container must outlive the field, or be replaced.
   DilationField(const SpotParameters& parameters, const Container& container, double diameter);
 
@@ -40,7 +38,7 @@ class DilationField {
   double at(const Vector3& point) const;
 
   /// The speed of a spot there, over v_s.
-  double pace(const Vector3& point) const;
+  double relative_speed(const Vector3& point) const;
 
   /// Works out the volume inside the walls anew, as after these changed.
   void replace_container(const Container& container);
@@ -67,7 +65,7 @@ class DilationField {
   bool counted(const Node& node) const;
   std::size_t place(const Node& node) const;
   double volume_of(const Node& node) const;
-  void look_volumes_up();
+  void find_volumes();
 
   const Container* container_;
   Vector3 origin_;

@@ -3,13 +3,9 @@
 
 #include <cstdint>
 
-namespace spot {
+#include "spot/walk/influence_profile.hpp"
 
-/// How the influence of a move falls off with the distance r of a grain from its middle: the grain's share of it.
-enum class InfluenceProfile {
-  uniform,    ///< 1 up to R_s and nothing beyond (2006, 2010)
-  parabolic,  ///< 1 - r^2 / R_s^2: neighbours move by nearly the same, so that they overlap less
-};
+namespace spot {
 
 /// The five fitted numbers of the spot model and the seed.
 /// "2006" is Rycroft, Bazant, Grest, Landry, Phys. Rev. E 73, 051306; "2010" is Rycroft, Wong, Bazant,
@@ -21,11 +17,11 @@ struct SpotParameters {
   double step_height = 0.0;     ///< dz: and by dz upwards (length)
   double speed = 0.0;           ///< v_s: mean drift speed of a spot (length / time)
   double injection_rate = 0.0;  ///< nu_s: births per time (1 / time)
-  /// N: a spot always carries the free volume of w N grains, however many it encloses, each counted by its share
-  /// (2010's fixed-volume weighting).
+  /// N: a spot always carries the free volume of w N grains of the reference diameter, whatever volume it encloses, of
+  /// which each grain's counts by its share of the influence (2010's fixed-volume weighting). In grain volumes.
   /// 0: every grain it encloses moves by -w dr (2006).
   double fixed_volume = 0.0;
-  InfluenceProfile profile = InfluenceProfile::uniform;
+  const InfluenceProfile* profile = InfluenceProfile::uniform;
   /// p: the chance that a step goes the way of the last one, without drawing (2006, section V: a persistent walk).
   double persistence = 0.0;
   /// c_0: spots climb at v_s where they take this share of the volume, and elsewhere in proportion to that share
@@ -45,19 +41,12 @@ struct SpotParameters {
   double diffusion_length() const {
     return step_width * step_width / (4.0 * step_height) * (1.0 + persistence) / (1.0 - persistence);
   }
-  /// The share of a grain anywhere within R_s, on average.
-  double mean_share() const { return profile == InfluenceProfile::uniform ? 1.0 : 0.4; }
-  /// Of two grains in touch anywhere within R_s, the mean square of the difference of their shares: 1/4 if one of them
-  /// is as likely as not to be inside, or 4 d^2 <r^2> <cos^2> / R_s^4.
-  double mean_square_difference(double diameter) const {
-    return profile == InfluenceProfile::uniform ? 0.25 : 0.8 * (diameter / radius) * (diameter / radius);
-  }
   /// Of the uniform spot with the same volume (length).
-  double equivalent_radius() const;
+  double equivalent_radius() const { return profile->equivalent_radius(radius); }
   /// V_s, the free volume that one spot carries through a packing of this packing fraction (length^3).
   double spot_volume(double packing_fraction) const;
   /// The grains' own volume that one spot takes out of the packing around it: that of w N grains, with a fixed volume,
-  /// or of as many as it encloses at a packing fraction of 0.58 (length^3).
+  /// or of as many as it encloses at the packing fraction of flow (length^3).
   double missing_volume(double diameter) const;
 
   /// Throws InvalidParameter that names the first number outside its range.

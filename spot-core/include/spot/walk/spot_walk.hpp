@@ -14,10 +14,10 @@ struct Spot {
   std::int64_t id;
   std::int64_t steps;  ///< taken so far
   Vector3 position;
-  double next_step;     ///< time of the step to come
-  double turn = 0.0;    ///< a uniform random number, for its direction
-  double chance = 0.0;  ///< another, for whoever draws lots
-  double pace = 1.0;    ///< its speed over v_s
+  double next_step;             ///< time of the step to come
+  double direction = 0.0;       ///< a uniform random number, for its direction
+  double chance = 0.0;          ///< another, for whoever draws lots
+  double relative_speed = 1.0;  ///< its speed over v_s
 };
 
 /// How spots are born and walk. Walks do not look at grains, and there is no state but the spot: all draws follow from
@@ -36,10 +36,11 @@ class SpotWalk {
 
   Spot birth(std::int64_t id, double time, const Container& container) const;
 
-  /// From `time` on, the spot goes at this pace: what is left of its waiting time gets shorter or longer.
-  void set_pace(Spot& spot, double time, double pace) const;
+  /// From `time` on, the spot goes at this speed over v_s: what is left of its waiting time gets shorter or longer.
+  void set_relative_speed(Spot& spot, double time, double relative_speed) const;
 
-  /// Carries out the next step of a spot and draws the time of the one after.
+  /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
+  /// cell then; the middle of the step need not be.
   Move step(Spot& spot, const Container& container) const;
 
  private:

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a dump does not say: units and geometry of the run, read from the ``scene.json`` beside the dumps."""
+
+import glob
+import json
+import math
+import os
+from dataclasses import MISSING, asdict, dataclass, fields
+
+import numpy as np
+
+from ..base.errors import SceneError
+from .container import Container
+
+FILE_NAME = "scene.json"
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Units and geometry, in the units of the dump.
+
+    diameter : grain diameter d
+    gravity : acceleration g
+    timestep : time of one step of the dumps' TIMESTEP
+    half_width_x, half_depth_y : walls at x = axis_x +- half_width_x and y = axis_y +- half_depth_y
+    orifice_radius : of the circular orifice on the axis
+    opening_time : when the orifice opens, counted from TIMESTEP 0
+    axis_x, axis_y, base_z : where the axis of silo and orifice meets the base
+    program : what made the dumps
+    grains : how many there were at the start, None where it was not said
+    """
+
+    diameter: float
+    gravity: float
+    timestep: float
+    half_width_x: float
+    half_depth_y: float
+    orifice_radius: float
+    opening_time: float = 0.0
+    axis_x: float = 0.0
+    axis_y: float = 0.0
+    base_z: float = 0.0
+    program: str = "unknown"
+    grains: int = None
+
+    def __post_init__(self):
+        for key in NUMBERS:
+            if not _is_finite(getattr(self, key)) or getattr(self, key) <= 0:
+                raise SceneError(f"scene: '{key}' must be a positive number, not {getattr(self, key)!r}")
+        for key in ORIGIN:
+            if not _is_finite(getattr(self, key)):
+                raise SceneError(f"scene: '{key}' must be a number, not {getattr(self, key)!r}")
+        if not isinstance(self.program, str):
+            raise SceneError(f"scene: 'program' must be a text, not {self.program!r}")
+
+    @property
+    def tau(self):
+        """sqrt(d/g) in the dump's unit of time."""
+        return math.sqrt(self.diameter / self.gravity)
+
+    def time(self, timestep):
+        """Time since the orifice was opened, in tau."""
+        return (timestep * self.timestep - self.opening_time) / self.tau
+
+    def positions(self, positions):
+        """Positions (n, 3) of a dump in d, from where the axis meets the base."""
+        return (positions - np.array([self.axis_x, self.axis_y, self.base_z])) / self.diameter
+
+    def container(self):
+        """The container in units of d."""
+        return Container(self.half_width_x / self.diameter, self.half_depth_y / self.diameter,
+                         self.orifice_radius / self.diameter)
+
+    def as_dict(self):
+        return asdict(self)
+
+
+def _is_finite(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+KEYS = tuple(f.name for f in fields(Scene))
+NUMBERS = tuple(f.name for f in fields(Scene) if f.type is float and f.default is MISSING)
+ORIGIN = tuple(f.name for f in fields(Scene) if f.type is float and f.default is not MISSING)  # of time and space
+
+
+def load_scene(source, scene_file=None, overrides=None):
+    """The scene of the dumps ``source`` (a folder, file or wildcard).
+
+    scene_file : read instead of the ``scene.json`` in the dumps' folder
+    overrides : key -> value, wins over the file; None values are ignored
+
+    Raises SceneError if there is no such source, or naming the key that is missing, unknown or bad.
+    """
+    if not glob.has_magic(source) and not os.path.exists(source):
+        raise SceneError(f"{source}: no such file or folder")
+    path = scene_file or os.path.join(source if os.path.isdir(source) else os.path.dirname(source), FILE_NAME)
+    values = _read_json(path) if scene_file or os.path.exists(path) else {}
+    values.update({key: value for key, value in (overrides or {}).items() if value is not None})
+    for key in NUMBERS:
+        if key not in values:
+            where = f"in {path}" if os.path.exists(path) else f"(no {path})"
+            raise SceneError(f"{source}: scene key '{key}' is missing {where}; "
+                             f"add it there or give it on the command line")
+    try:
+        return scene_of(values)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from error
+
+
+def scene_of(values):
+    """The Scene of key -> value; raises SceneError for a key that is unknown or bad: it would change what the others mean."""
+    unknown = ", ".join(f"'{key}'" for key in values if key not in KEYS)
+    if unknown:
+        raise SceneError(f"unknown scene key {unknown}; allowed are {', '.join(KEYS)}")
+    return Scene(**values)
+
+
+def _read_json(path):
+    try:
+        with open(path, encoding="utf-8") as handle:
+            values = json.load(handle, object_pairs_hook=_without_repeats)
+    except OSError as error:
+        raise SceneError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise SceneError(f"{path}: not valid JSON ({error})") from error
+    if not isinstance(values, dict):
+        raise SceneError(f"{path}: wants an object with the keys {', '.join(NUMBERS)}")
+    return values
+
+
+def _without_repeats(pairs):
+    """A JSON object; raises ValueError for a key that stands there twice, of which JSON keeps the last."""
+    values = dict(pairs)
+    if len(values) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise ValueError("key '" + next(name for name in names if names.count(name) > 1) + "' stands there twice")
+    return values

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Whether the scene fits the dumps: a wrong one makes every number wrong."""
+
+import math
+
+import numpy as np
+
+from ..base.errors import SceneError
+
+BASE_GAP = 1.0  # d; centres of grains at rest on a base are lower
+
+
+def require_diameter(scene, frame):
+    """Raises SceneError where grains cannot have the scene's diameter: a wrong one makes every number wrong."""
+    diameter = scene.diameter
+    radius = frame.extra.get("radius")
+    if radius is not None and np.any(np.abs(2 * radius / diameter - 1) > 1e-3):
+        odd = np.argmax(np.abs(2 * radius / diameter - 1))
+        raise SceneError(f"grain {frame.ids[odd]} has radius {radius[odd]:g}, "
+                         f"but the scene's diameter is {diameter:g}")
+    if len(frame.ids) < 2:
+        return
+    extent = np.ptp(frame.positions, axis=0) + diameter
+    if len(frame.ids) * math.pi / 6 * diameter**3 > extent.prod():
+        raise SceneError(f"the scene's diameter {diameter:g} does not fit the dump: {len(frame.ids)} such grains "
+                         f"have more volume than the box of {extent[0]:.3g} x {extent[1]:.3g} x {extent[2]:.3g} "
+                         "they lie in")
+
+
+def warn_of_misfit(source, run, lowest, warn):
+    """Grains outside the walls, or a first snapshot that ends far above the base, mean another scene than that of the dumps."""
+    if run.outside.max() > 0:
+        most = int(run.outside.argmax())
+        warn(f"{source}: {run.outside[most]} of {run.grains[most]} grains are outside the walls and the base of the scene at "
+             f"t = {run.times[most]:g} tau")
+    if BASE_GAP < lowest < math.inf:
+        warn(f"{source}: the lowest grain of the first snapshot lies {lowest:g} d above the base of the scene, from which all "
+             "heights count; 'base_z' says where the base is")

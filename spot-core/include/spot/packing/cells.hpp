@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "spot/base/aligned_vector.hpp"
+#include "spot/packing/cell_lattice.hpp"
+#include "spot/packing/grain.hpp"
+#include "spot/packing/point.hpp"
+#include "spot/parallel/slabs.hpp"
+
+namespace spot {
+
+/// A place for a grain in a cell held; slots change when cells get more room, places don't.
+struct Place {
+  std::uint32_t cell, in_cell;
+};
+
+/// What else is kept for every slot, and has to follow when slots are numbered anew.
+class SlotData {
+ public:
+  virtual ~SlotData() = default;
+  /// Slot `s` is slot `now[s]` from now on, of so many.
+  virtual void renumber(const std::vector<std::uint32_t>& now, std::size_t slots) = 0;
+};
+
+enum Side { below, above };
+
+/// Grains in the cells of a lattice, with room in each cell for as many as it needs.
+///
+/// Layout: every cell has consecutive *slots*, a multiple of kernels::pack, cell after cell, so that a row of cells is
+/// one contiguous range of slots. Empty slots hold points that are in nobody's reach. A grain is in the cell of its
+/// *reference* (Verlet reference position), the place where it was listed last.
+///
+/// A rank owns the grains listed in its own layers; of the layer next to them on each side, the ghost layer, it holds
+/// copies.
+class Cells {
+ public:
+  explicit Cells(const CellLattice& lattice) : lattice_(lattice) {}
+  Cells(const Cells&) = delete;
+  Cells& operator=(const Cells&) = delete;
+
+  CellLattice& lattice() { return lattice_; }
+  const CellLattice& lattice() const { return lattice_; }
+
+  /// Empties all cells, of the layers that a rank then owns or has ghosts of. Throws InvalidPacking if there are too
+  /// many.
+  void hold(const Slabs& slabs, int rank);
+  const Slabs& slabs() const { return slabs_; }
+  /// `data` follows the slots for as long as these cells exist.
+  void attach(SlotData& data) { attached_.push_back(&data); }
+
+  // Layers and cells, by their numbers among those held.
+  int rank() const { return rank_; }
+  int own_layers() const { return slabs_.first(rank_ + 1) - slabs_.first(rank_); }
+  int first_own_layer() const { return slabs_.first(rank_); }
+  bool has_ghosts(Side side) const { return ghost_layers_[side] != 0; }
+  /// The first cell of the own layer next to a ghost layer, and of that ghost layer.
+  std::uint32_t first_of_border(Side side) const;
+  std::uint32_t first_of_ghosts(Side side) const { return side == below ? 0 : last_own(); }
+  std::uint32_t count() const { return lattice_.cells_held(); }
+  std::uint32_t first_own() const { return static_cast<std::uint32_t>(ghost_layers_[below]) * in_layer(); }
+  std::uint32_t last_own() const { return first_own() + static_cast<std::uint32_t>(own_layers()) * in_layer(); }
+  std::uint32_t in_layer() const { return lattice_.cells_in_layer(); }
+  bool own(std::uint32_t cell) const { return cell >= first_own() && cell < last_own(); }
+  /// Among the own layers.
+  std::size_t layer_of(std::uint32_t cell) const { return (cell - first_own()) / in_layer(); }
+
+  // Slots.
+  std::uint32_t slots() const { return first_slot_.back(); }
+  std::uint32_t first_slot(std::uint32_t cell) const { return first_slot_[cell]; }
+  std::uint32_t end_slot(std::uint32_t cell) const { return first_slot_[cell + 1]; }
+  std::uint32_t slot(const Place& place) const { return first_slot_[place.cell] + place.in_cell; }
+  std::uint32_t cell_of(std::uint32_t slot) const { return cell_of_[slot]; }
+  Place place_of(std::uint32_t slot) const { return {cell_of_[slot], slot - first_slot_[cell_of_[slot]]}; }
+  bool occupied(std::uint32_t slot) const { return points[slot].state != Point::empty; }
+  /// Calls visit(slot) for all grains of these cells.
+  template <typename Visit>
+  void visit(std::uint32_t first_cell, std::uint32_t last_cell, const Visit& visit) const {
+    for (std::uint32_t slot = first_slot_[first_cell]; slot < first_slot_[last_cell]; ++slot)
+      if (occupied(slot)) visit(slot);
+  }
+  template <typename Visit>
+  void visit_own(const Visit& visit) const {
+    this->visit(first_own(), last_own(), visit);
+  }
+  template <typename Visit>
+  void visit_ghosts(const Visit& visit) const {
+    this->visit(0, first_own(), visit);
+    this->visit(last_own(), count(), visit);
+  }
+
+  /// An empty place in a cell; if there is none, slots are numbered anew. Throws InvalidPacking if there are too many.
+  Place ensure_room(std::uint32_t cell);
+  /// As many slots in a cell as a place in it needs.
+  void ensure_place(const Place& place);
+  void occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference);
+  void vacate(std::uint32_t slot);
+  /// What neighbouring ranks have copies of has changed.
+  void note_change(std::uint32_t slot);
+  /// Places in own border layers in which something has changed since they were taken last.
+  std::vector<Place> take_changes(Side side) { return std::exchange(changed_[side], {}); }
+
+  /// Grains owned.
+  std::size_t size() const { return size_; }
+  Vector3 from_low(const Point& point, std::uint32_t cell) const {
+    return lattice_.from_low(point, lattice_.cell(cell));
+  }
+  Vector3 position(std::uint32_t slot) const { return lattice_.low() + from_low(points[slot], cell_of_[slot]); }
+  Grain grain(std::uint32_t slot) const;
+  std::vector<std::int64_t> grains_in_own_layers() const;
+  std::size_t memory() const;
+
+  // Of every slot.
+  AlignedVector<Point> points, references, corrections;  ///< `corrections`: the last, as far as a solver carries it on
+  std::vector<std::int64_t> ids;                         ///< -1 in empty slots
+  // Of every cell.
+  std::vector<std::int32_t> unrelaxed;  ///< moves that have reached into it since it was relaxed, in sixteenths
+  std::vector<std::int32_t> drift;      ///< no grain is farther from its reference, in quanta
+  /// Places of this rank to which grains came that are neither free nor held, and perhaps others.
+  std::vector<Place> in_motion;
+
+  /// Parts of a move in `unrelaxed`.
+  static constexpr std::int32_t parts_of_move = 16;
+
+ private:
+  void give_room(std::uint32_t cell);
+
+  CellLattice lattice_;
+  Slabs slabs_{std::vector<std::int64_t>{0}, 1};
+  int rank_ = 0;
+  std::array<int, 2> ghost_layers_ = {0, 0};     // held of the ranks below and above: 0 or 1
+  std::vector<std::uint32_t> first_slot_ = {0};  // of each cell, and the end of the last
+  std::vector<std::uint32_t> cell_of_;           // of each slot
+  std::vector<SlotData*> attached_;
+  std::array<std::vector<Place>, 2> changed_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace spot

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "spot/base/aligned_vector.hpp"
+#include "spot/packing/cells.hpp"
+#include "spot/packing/wall_marks.hpp"
+#include "spot/parallel/workers.hpp"
+
+namespace spot {
+
+namespace kernels {
+struct Kernels;
+struct Lists;
+}  // namespace kernels
+
+/// Slots of the neighbours of a grain.
+struct Neighbours {
+  const std::uint32_t *first, *last;
+  const std::uint32_t* begin() const { return first; }
+  const std::uint32_t* end() const { return last; }
+};
+
+/// The neighbours of every grain: those whose references are closer than diameter + skin. So lists follow from the
+/// references alone, and hold every pair in contact for as long as no grain is half a skin from its reference. Ghosts
+/// have lists, too.
+///
+/// Layout: each grain's list takes one or more blocks of kernels::lanes entries in one array; a list that outgrows its
+/// blocks moves to others, and blocks left behind are used again.
+class NeighbourLists : public SlotData {
+ public:
+  NeighbourLists(Cells& cells, WallMarks& walls, const kernels::Kernels& kernels);
+
+  Neighbours of(std::uint32_t slot) const { return {list_of(slot), list_of(slot) + size_[slot]}; }
+
+  /// Lists a grain and its neighbours with each other, and marks it if it is near a wall.
+  void list(std::uint32_t slot, const Container& container);
+  /// Lists many whose references are all in place already: workers find their neighbours, and one of them writes them
+  /// down.
+  void list(const std::vector<Place>& places, const Container& container, Workers& workers);
+  void unlist(std::uint32_t slot);
+  /// Hands the list of one slot to another, which has none.
+  void rename(std::uint32_t from, std::uint32_t to);
+
+  /// For kernels; valid until something is listed.
+  kernels::Lists view() const;
+
+  void renumber(const std::vector<std::uint32_t>& now, std::size_t slots) override;
+  std::size_t memory() const;
+
+ private:
+  /// The neighbours that one worker has found, of one grain after the other.
+  struct Finding {
+    std::vector<std::uint32_t> found;
+    std::vector<std::size_t> ends;  // in `found`, of each grain
+    std::vector<CellRow> rows;
+
+    void clear() {
+      found.clear();
+      ends.clear();
+    }
+  };
+
+  std::uint32_t* list_of(std::uint32_t slot);
+  const std::uint32_t* list_of(std::uint32_t slot) const;
+  void find_neighbours(std::uint32_t slot, Finding& finding) const;
+  void list(std::uint32_t slot, const std::uint32_t* found, std::size_t n, const Container& container);
+  void add_neighbour(std::uint32_t slot, std::uint32_t neighbour);
+  void remove_neighbour(std::uint32_t slot, std::uint32_t neighbour);
+  void give_room(std::uint32_t slot);
+  std::uint32_t take_blocks(std::size_t order);
+
+  Cells& cells_;
+  WallMarks& walls_;
+  const kernels::Kernels& kernels_;
+  AlignedVector<std::uint32_t> neighbours_;
+  std::vector<std::uint32_t> block_;  // the first of each slot
+  std::vector<std::uint8_t> room_;    // 2^(room - 1) blocks, or none
+  std::vector<std::uint8_t> size_;
+  std::array<std::vector<std::uint32_t>, 4> unused_;  // blocks, by how many there are in a row
+  std::vector<std::uint8_t> marks_;                   // of slots, zero between uses
+  std::vector<Finding> findings_;
+};
+
+}  // namespace spot

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "spot/base/bytes.hpp"
+#include "spot/parallel/communicator.hpp"
+#include "spot/walk/dilation_field.hpp"
+#include "spot/walk/spot_walk.hpp"
+
+namespace spot {
+
+/// The live spots: births, relative speeds, steps and removals, for all drivers.
+///
+/// A driver asks either for one step after the other, in the order of time, or for all steps until the end of a window,
+/// spot by spot in the order of birth. The first is for one rank; the second is for any number of them, of which each
+/// has spots of its own.
+class Spots {
+ public:
+  /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
+  Spots(const SpotParameters& parameters, const Container& container, double diameter);
+
+  /// In the order of (time, spot): the next step of any spot up to and including `time`, or none. The spot has been
+  /// moved. Relative speeds are set whenever a spot has climbed a tenth of its radius at v_s.
+  std::optional<Move> next_step(double time, const Container& container);
+
+  /// Collective. From `now` on all spots climb as fast as the dilation there lets them.
+  void set_relative_speeds(double now, Communicator& communicator);
+
+  /// Whom a spot belongs to.
+  using Belongs = std::function<bool(const Spot&)>;
+
+  /// Births up to and including `until`: every rank sees all of them, and keeps those that belong to it.
+  void give_birth(double until, const Container& container, const Belongs& here);
+
+  /// Steps up to and including `until`, of one spot after the other. Calls visit(spot, moves) for those that have made
+  /// any.
+  void step_until(double until, const Container& container,
+                  const std::function<void(const Spot&, const std::vector<Move>&)>& visit);
+
+  /// There is nothing left above the spot. One that is gone already may be named again.
+  void remove(std::int64_t spot);
+
+  /// Takes out the spots that do not belong here.
+  std::vector<Spot> take_out_others(const Belongs& here);
+  void take_in(const std::vector<Spot>& spots);
+
+  /// In order of birth.
+  std::vector<Spot> live() const;
+  std::int64_t born() const { return born_; }
+
+  /// Other walls; the spots stay.
+  void replace_container(const Container& container) { dilation_.replace_container(container); }
+
+  void save(Bytes& bytes) const;
+  /// Takes in what save() appended, on each of several ranks maybe. Throws InvalidState if it is damaged.
+  void restore(ByteReader& saved);
+
+  std::size_t memory() const;
+
+ private:
+  struct Place {
+    Spot spot;
+    bool removed;  // until there are enough of them to close the gaps
+  };
+  struct Event {
+    double time;
+    std::int64_t spot;
+    std::size_t place;
+    /// Order of a heap with the earliest event on top, ties by spot.
+    bool operator<(const Event& other) const { return time != other.time ? time > other.time : spot > other.spot; }
+  };
+
+  bool bear_next(const Container& container, const Belongs& here);
+  void queue_all();
+  void queue(std::size_t place);
+  void drop_removed_events();
+  double next_setting() const;
+  void close_gaps();
+
+  SpotWalk walk_;
+  std::vector<Place> places_;  // in order of birth
+  std::size_t removed_ = 0;
+  double next_birth_;
+  std::int64_t born_ = 0;
+  bool dilates_;
+  DilationField dilation_;
+
+  // Of spots that step in the order of time.
+  std::vector<Event> events_;  // a heap of next steps; those of removed spots are dropped when they come up
+  bool queued_ = false;        // are all next steps in it?
+  double setting_interval_;    // of relative speeds; 0: never
+  std::int64_t settings_ = 0;
+};
+
+}  // namespace spot

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/geometry/body_container.hpp"
+
+#include <algorithm>
+
+namespace spot {
+
+std::optional<WallOnPath> BodyContainer::first_wall(const Vector3& from, const Vector3& to) const {
+  const bool rises = from.z() < orifice_.centre.z();
+  const auto passed = orifice_.passed_at(from, to);
+  if (rises && !passed) return std::nullopt;
+  // Even where the body leads on below, nothing gets past the orifice.
+  auto base = base_.meet(from, to);
+  if (rises && base) return base;
+  const double begin = rises ? *passed : 0.0, end = passed && !rises ? *passed : 1.0;
+  auto wall = first_wall_above(from + begin * (to - from), from + end * (to - from));
+  if (!wall) return base;
+  wall->share = begin + wall->share * (end - begin);
+  return wall;
+}
+
+std::optional<Vector3> BodyContainer::reflect_spot(const Vector3& start, const Vector3& target) const {
+  constexpr int rounds = 8;
+  // A mirror makes a step longer only by what the start is closer to the wall than the buffer.
+  const double longest = (target - start).norm() + 2.0 * std::max(buffers_.side, buffers_.base);
+  Vector3 position = target;
+  for (int round = 0; round < rounds; ++round) {
+    position = base_.reflect_spot(buffers_.base, position);
+    if ((position - start).norm() > longest) break;
+    if (base_.meet(start, position)) break;
+    if (const auto wall = first_wall(start, position)) {
+      if (wall->normal.isZero()) break;
+      const double behind = wall->normal.dot(start + wall->share * (position - start) - position);
+      position += 2.0 * (buffers_.side + behind) * wall->normal;
+      continue;
+    }
+    if (position.z() <= orifice_.centre.z()) return position;
+    const auto close = nearest_wall(position, buffers_.side);
+    if (!close) return position;
+    position += 2.0 * (buffers_.side - close->distance) * close->normal;
+  }
+  return std::nullopt;
+}
+
+}  // namespace spot

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/geometry/walled_container.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spot/base/errors.hpp"
+
+namespace spot {
+
+namespace {
+
+/// The shares of a straight path at which it passes from cell to cell, in increasing order, and 1 for its end.
+std::vector<double> ends_of_pieces(const Periodic& periodic, const Vector3& from, const Vector3& to) {
+  std::vector<double> ends = {1.0};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!periodic.along(axis) || from[axis] == to[axis]) continue;
+    const double least = std::min(from[axis], to[axis]), most = std::max(from[axis], to[axis]);
+    double border =
+        periodic.low(axis) + std::ceil((least - periodic.low(axis)) / periodic.length(axis)) * periodic.length(axis);
+    for (; border < most; border += periodic.length(axis))
+      if (border > least) ends.push_back((border - from[axis]) / (to[axis] - from[axis]));
+  }
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
+}  // namespace
+
+WalledContainer::WalledContainer(const Orifice& orifice) : orifice_(orifice) {
+  if (!(orifice.radius > 0.0) || !std::isfinite(orifice.radius) || !orifice.centre.allFinite())
+    throw InvalidContainer(message("orifice radius is ", orifice.radius, " but must be positive and finite"));
+}
+
+void WalledContainer::add(std::unique_ptr<Wall> wall, double spot_buffer) {
+  if (!(spot_buffer >= 0.0) || !std::isfinite(spot_buffer))
+    throw InvalidContainer(message("spot buffer is ", spot_buffer, " but must be zero or positive"));
+  if (const auto plane = wall->axis_plane()) {
+    require_no_period_across(*plane);
+    axis_planes_.push_back(*plane);
+  }
+  walls_.push_back({std::move(wall), spot_buffer});
+}
+
+void WalledContainer::require_no_period_across(const AxisPlane& plane) const {
+  if (periodic_.along(plane.axis))
+    throw InvalidContainer(message("a wall across ", "xyz"[plane.axis], " at ", plane.at,
+                                   " stands in the way of a container that repeats along that axis"));
+}
+
+void WalledContainer::repeat(const Periodic& periodic) {
+  for (int axis = 0; axis < 2; ++axis)
+    if (orifice_.centre[axis] - orifice_.radius < periodic.low(axis) ||
+        orifice_.centre[axis] + orifice_.radius > periodic.high(axis))
+      throw InvalidContainer(message("orifice of radius ", orifice_.radius, " at ", "xy"[axis], " = ",
+                                     orifice_.centre[axis], " reaches out of the cell that repeats, from ",
+                                     periodic.low(axis), " to ", periodic.high(axis)));
+  periodic_ = periodic;
+  for (const AxisPlane& plane : axis_planes_) require_no_period_across(plane);
+}
+
+bool WalledContainer::contains(const Vector3& place) const {
+  const Vector3 centre = periodic_.wrap(place);
+  return std::all_of(walls_.begin(), walls_.end(),
+                     [&](const Bounded& b) { return b.wall->nearest(centre).distance >= 0.0; }) &&
+         centre.z() >= orifice_.centre.z();
+}
+
+bool WalledContainer::may_have_left_to(const Vector3& place) const {
+  // Below the orifice grains may have gone on into the next cell: to the image nearest to its axis.
+  const Vector3 centre =
+      periodic_.any() ? orifice_.centre + periodic_.nearest(Vector3(place - orifice_.centre)) : place;
+  return std::all_of(walls_.begin(), walls_.end(), [&](const Bounded& b) { return b.wall->may_have_left_to(centre); });
+}
+
+void WalledContainer::contacts(const Vector3& place, double reach, WallContacts& contacts) const {
+  const Vector3 centre = periodic_.wrap(place);
+  contacts.clear();
+  for (const Bounded& b : walls_) {
+    const WallContact contact = b.wall->nearest(centre);
+    if (contact.distance < reach) contacts.add(contact);
+  }
+}
+
+void WalledContainer::other_contacts(const Vector3& place, double reach, WallContacts& contacts) const {
+  const Vector3 centre = periodic_.wrap(place);
+  contacts.clear();
+  for (const Bounded& b : walls_) {
+    if (b.wall->axis_plane()) continue;
+    const WallContact contact = b.wall->nearest(centre);
+    if (contact.distance < reach) contacts.add(contact);
+  }
+}
+
+std::optional<WallOnPath> WalledContainer::first_wall(const Vector3& from, const Vector3& to) const {
+  if (!periodic_.any()) return first_wall_in_cell(from, to);
+  double begin = 0.0;
+  for (const double end : ends_of_pieces(periodic_, from, to)) {
+    const Vector3 first = from + begin * (to - from), last = end == 1.0 ? to : from + end * (to - from);
+    const Vector3 middle = 0.5 * (first + last), into_cell = periodic_.wrap(middle) - middle;
+    if (auto wall = first_wall_in_cell(first + into_cell, last + into_cell)) {
+      wall->share = begin + wall->share * (end - begin);
+      return wall;
+    }
+    begin = end;
+  }
+  return std::nullopt;
+}
+
+/// Of a path in the cell. Walls go on beyond it.
+std::optional<WallOnPath> WalledContainer::first_wall_in_cell(const Vector3& from, const Vector3& to) const {
+  const bool rises = from.z() < orifice_.centre.z();
+  const auto passed = orifice_.passed_at(from, to);
+  if (rises && !passed) return std::nullopt;
+  const double begin = rises ? *passed : 0.0, end = passed && !rises ? *passed : 1.0;
+  std::optional<WallOnPath> first;
+  for (const Bounded& b : walls_) {
+    auto wall = b.wall->meet(from, to);
+    // Planes go on below the orifice, where they are no walls.
+    if (wall && wall->share < begin && (wall = b.wall->meet(from + begin * (to - from), to)))
+      wall->share = begin + wall->share * (1.0 - begin);
+    if (wall && wall->share <= end && (!first || wall->share < first->share)) first = wall;
+  }
+  return first;
+}
+
+std::optional<Vector3> WalledContainer::reflect_spot(const Vector3& start, const Vector3& target) const {
+  if (!periodic_.any()) return reflect_in_cell(start, target);
+  const Vector3 into_cell = periodic_.wrap(target) - target;
+  auto end = reflect_in_cell(start + into_cell, target + into_cell);
+  if (end) *end -= into_cell;
+  return end;
+}
+
+std::optional<Vector3> WalledContainer::reflect_in_cell(const Vector3& start, const Vector3& target) const {
+  // A reflection can lead into the next wall's buffer; in a corner or a narrow gap a few rounds settle it.
+  constexpr int rounds = 8;
+  Vector3 position = target;
+  for (int round = 0; round < rounds; ++round) {
+    const Vector3 before = position;
+    for (const Bounded& b : walls_) position = b.wall->reflect_spot(b.spot_buffer, position);
+    if (position != before) continue;
+    if (first_wall(start, position)) break;
+    return position;
+  }
+  return std::nullopt;
+}
+
+}  // namespace spot

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/packing/cell_lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "packing/wrapped_integers.hpp"
+#include "spot/base/errors.hpp"
+
+namespace spot {
+
+namespace {
+
+/// Positions in 32 bits reach 128 d at least before they wrap around; overlaps that matter are ten thousand quanta.
+constexpr int quantum_bits = 24;
+
+/// Lists cover this shell around the diameter. Thicker means longer lists, thinner means listing anew more often.
+constexpr double skin_in_diameters = 0.5;
+
+/// Edges of a cell, as long as lists reach: in a dense packing it holds 3.7 grains, and nine hardly ever.
+constexpr std::array<double, 3> edges_in_diameters = {1.5, 1.5, 1.5};
+
+void require_countable(double n, double most, double edge, std::size_t axis) {
+  if (n > most)
+    throw InvalidPacking(
+        message("grains are spread over ", n, " cells of ", edge, " along ", "xyz"[axis], ", which is too many"));
+}
+
+}  // namespace
+
+CellLattice::CellLattice(double diameter, double extent)
+    : diameter_(diameter),
+      extent_(extent),
+      quantum_(diameter, extent, quantum_bits),
+      skin_(skin_in_diameters * diameter) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    edge_quanta_[axis] = std::llround(edges_in_diameters[axis] * diameter_ / quantum_.length());
+    edge_[axis] = static_cast<double>(edge_quanta_[axis]) * quantum_.length();
+    per_edge_[axis] = 1.0 / edge_[axis];
+  }
+}
+
+void CellLattice::span(const Vector3& low, const Vector3& high) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    low_[axis] = quantum_.snap(low[axis]);
+    const double n = std::floor((high[axis] - low[axis]) / edge_[a]) + 1.0;
+    require_countable(n, std::numeric_limits<std::int32_t>::max(), edge_[a], a);
+    n_[a] = static_cast<int>(n);
+  }
+}
+
+void CellLattice::span(const Vector3& low, const std::array<int, 3>& size) {
+  low_ = low;
+  n_ = size;
+}
+
+std::array<int, 6> CellLattice::cells_to(const Vector3& place) const {
+  std::array<int, 6> cells{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = (place[static_cast<Eigen::Index>(axis)] - low_[static_cast<Eigen::Index>(axis)]);
+    cells[axis] = at < 0.0 ? static_cast<int>(std::ceil(-at * per_edge_[axis])) : 0;
+    cells[axis + 3] = std::max(0, static_cast<int>(std::floor(at * per_edge_[axis])) + 1 - n_[axis]);
+  }
+  return cells;
+}
+
+void CellLattice::grow(const std::array<int, 3>& below, const std::array<int, 3>& above) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    require_countable(static_cast<double>(n_[axis]) + below[axis] + above[axis],
+                      std::numeric_limits<std::int32_t>::max() / 2, edge_[axis], axis);
+    low_[static_cast<Eigen::Index>(axis)] -= below[axis] * edge_[axis];
+    n_[axis] += below[axis] + above[axis];
+  }
+}
+
+Cell CellLattice::cell(std::uint32_t number) const {
+  const int i = static_cast<int>(number), in_layer = i % (n_[0] * n_[1]);
+  return {in_layer % n_[0], in_layer / n_[0], i / (n_[0] * n_[1]) + first_layer_};
+}
+
+std::array<std::int64_t, 3> CellLattice::quanta(const Vector3& from_low) const {
+  const double per_quantum = 1.0 / quantum_.length();  // a power of two
+  return {std::llrint(from_low.x() * per_quantum), std::llrint(from_low.y() * per_quantum),
+          std::llrint(from_low.z() * per_quantum)};
+}
+
+Point CellLattice::wrapped(const Vector3& from_low) const {
+  const auto q = quanta(from_low);
+  return {wrap(q[0]), wrap(q[1]), wrap(q[2]), Point::free};
+}
+
+Vector3 CellLattice::from_low(const Point& point, const Cell& at) const {
+  const std::int64_t x = at.x * edge_quanta_[0], y = at.y * edge_quanta_[1], z = at.z * edge_quanta_[2];
+  return quantum_.length() * Vector3(static_cast<double>(x + minus(point.x, wrap(x))),
+                                     static_cast<double>(y + minus(point.y, wrap(y))),
+                                     static_cast<double>(z + minus(point.z, wrap(z))));
+}
+
+Point CellLattice::wrapped_cells(const std::array<int, 3>& cells) const {
+  return {wrap(cells[0] * edge_quanta_[0]), wrap(cells[1] * edge_quanta_[1]), wrap(cells[2] * edge_quanta_[2]), 0};
+}
+
+void CellLattice::find_rows(const Vector3& at, double reach, int first, int last, std::vector<CellRow>& rows) const {
+  const int z0 = std::max(first, coordinate(at.z() - reach, 2));
+  const int z1 = std::min(last - 1, coordinate(at.z() + reach, 2));
+  const int y0 = coordinate(at.y() - reach, 1), y1 = coordinate(at.y() + reach, 1);
+  // Squared distance along one axis to a cell; the outermost cells also hold what lies beyond the lattice.
+  const auto gap = [this](double from_low, int cell, int axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double before = cell == 0 ? 0.0 : cell * edge_[a] - from_low;
+    const double beyond = cell == n_[a] - 1 ? 0.0 : from_low - (cell + 1) * edge_[a];
+    return square(std::max(0.0, std::max(before, beyond)));
+  };
+  for (int iz = z0; iz <= z1; ++iz) {
+    const double in_layer = square(reach) - gap(at.z(), iz, 2);
+    for (int iy = y0; iy <= y1; ++iy) {
+      const double in_row = in_layer - gap(at.y(), iy, 1);
+      if (in_row < 0.0) continue;
+      const double half = std::sqrt(in_row);
+      const std::uint32_t row = number_of({0, iy, iz});
+      rows.push_back({row + static_cast<std::uint32_t>(coordinate(at.x() - half, 0)),
+                      row + static_cast<std::uint32_t>(coordinate(at.x() + half, 0)) + 1});
+    }
+  }
+}
+
+}  // namespace spot

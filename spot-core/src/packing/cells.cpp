@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/packing/cells.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "packing/kernels.hpp"
+#include "packing/wrapped_integers.hpp"
+#include "spot/base/errors.hpp"
+#include "spot/base/memory.hpp"
+
+namespace spot {
+
+namespace {
+
+/// Room in a cell at first; a dense packing has 3.7 grains in it.
+constexpr std::uint32_t first_room = 2 * kernels::pack;
+
+void require_countable(double slots, std::uint32_t cells) {
+  if (slots > std::numeric_limits<std::uint32_t>::max() / kernels::lanes)
+    throw InvalidPacking(message("grains are spread over ", cells, " cells with room for ", slots,
+                                 ": the packing has collapsed, or is too large"));
+}
+
+}  // namespace
+
+void Cells::hold(const Slabs& slabs, int rank) {
+  slabs_ = slabs;
+  rank_ = rank;
+  const int first = first_own_layer(), layers = own_layers();
+  ghost_layers_ = {layers > 0 && first > 0 ? 1 : 0, layers > 0 && first + layers < lattice_.layers() ? 1 : 0};
+  const double cells = (static_cast<double>(layers) + ghost_layers_[below] + ghost_layers_[above]) *
+                       lattice_.size()[0] * lattice_.size()[1];
+  if (cells * first_room * kernels::lanes > std::numeric_limits<std::uint32_t>::max())
+    throw InvalidPacking(message("grains are spread over more than ", cells, " cells of ", lattice_.edge()[0], " by ",
+                                 lattice_.edge()[1], " by ", lattice_.edge()[2], ", which is too many"));
+  lattice_.hold(first - ghost_layers_[below], first + layers + ghost_layers_[above]);
+  const std::uint32_t n = count(), slots = n * first_room;
+  first_slot_.resize(n + 1);
+  cell_of_.resize(slots);
+  for (std::uint32_t cell = 0; cell <= n; ++cell) first_slot_[cell] = cell * first_room;
+  for (std::uint32_t slot = 0; slot < slots; ++slot) cell_of_[slot] = slot / first_room;
+  points.assign(slots, nobody);
+  references.assign(slots, nobody);
+  corrections.assign(slots, {0, 0, 0, 0});
+  ids.assign(slots, -1);
+  unrelaxed.assign(n, 0);
+  drift.assign(n, 0);
+  changed_ = {};
+  size_ = 0;
+  for (SlotData* data : attached_) data->renumber({}, slots);
+}
+
+std::uint32_t Cells::first_of_border(Side side) const { return side == below ? first_own() : last_own() - in_layer(); }
+
+// ---- slots
+
+Place Cells::ensure_room(std::uint32_t cell) {
+  std::uint32_t slot = first_slot(cell);
+  while (slot < end_slot(cell) && occupied(slot)) ++slot;
+  const Place place = {cell, slot - first_slot(cell)};
+  if (slot == end_slot(cell)) give_room(cell);
+  return place;
+}
+
+void Cells::ensure_place(const Place& place) {
+  while (place.in_cell >= end_slot(place.cell) - first_slot(place.cell)) give_room(place.cell);
+}
+
+/// More room for a cell, and for all others that have none left: soon they will need it, too.
+void Cells::give_room(std::uint32_t cell) {
+  std::vector<std::uint32_t> first(first_slot_.size()), now(slots());
+  std::uint64_t end = 0;
+  for (std::uint32_t c = 0; c < count(); ++c) {
+    first[c] = static_cast<std::uint32_t>(end);
+    bool full = true;
+    for (std::uint32_t slot = first_slot(c); slot < end_slot(c); ++slot) {
+      now[slot] = first[c] + slot - first_slot(c);
+      full = full && occupied(slot);
+    }
+    end += end_slot(c) - first_slot(c) + (full || c == cell ? kernels::pack : 0);
+    require_countable(static_cast<double>(end), count());
+  }
+  const auto slots = static_cast<std::uint32_t>(end);
+  first.back() = slots;
+  const auto spread = [&](auto& values, const auto& empty) {
+    auto old = std::move(values);
+    values.assign(slots, empty);
+    for (std::size_t slot = 0; slot < old.size(); ++slot) values[now[slot]] = old[slot];
+  };
+  spread(points, nobody);
+  spread(references, nobody);
+  spread(corrections, Point{0, 0, 0, 0});
+  spread(ids, std::int64_t{-1});
+  first_slot_ = std::move(first);
+  cell_of_.resize(slots);
+  for (std::uint32_t c = 0; c < count(); ++c)
+    std::fill(cell_of_.begin() + first_slot(c), cell_of_.begin() + end_slot(c), c);
+  for (SlotData* data : attached_) data->renumber(now, slots);
+}
+
+void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference) {
+  ids[slot] = id;
+  points[slot] = point;
+  references[slot] = reference;
+  corrections[slot] = {0, 0, 0, 0};
+  note_change(slot);
+  if (!own(cell_of(slot))) return;
+  ++size_;
+  if (point.state != Point::free && point.state != Point::held) in_motion.push_back(place_of(slot));
+}
+
+void Cells::vacate(std::uint32_t slot) {
+  ids[slot] = -1;
+  points[slot] = references[slot] = nobody;
+  if (own(cell_of(slot))) --size_;
+  note_change(slot);
+}
+
+void Cells::note_change(std::uint32_t slot) {
+  const Place place = place_of(slot);
+  if (!own(place.cell)) return;
+  for (const Side side : {below, above}) {
+    const std::uint32_t first = first_of_border(side);
+    if (has_ghosts(side) && place.cell >= first && place.cell < first + in_layer()) changed_[side].push_back(place);
+  }
+}
+
+// ---- the rest
+
+Grain Cells::grain(std::uint32_t slot) const { return {ids[slot], position(slot), points[slot].state == Point::held, 0.5 * lattice_.diameter()}; }
+
+std::vector<std::int64_t> Cells::grains_in_own_layers() const {
+  std::vector<std::int64_t> grains(static_cast<std::size_t>(own_layers()), 0);
+  visit_own([&](std::uint32_t slot) { ++grains[layer_of(cell_of(slot))]; });
+  return grains;
+}
+
+std::size_t Cells::memory() const {
+  return bytes_in(points, references, corrections, ids, unrelaxed, drift, in_motion, first_slot_, cell_of_, changed_[0],
+                  changed_[1]);
+}
+
+}  // namespace spot

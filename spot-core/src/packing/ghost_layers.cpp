@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/packing/ghost_layers.hpp"
+
+#include <algorithm>
+
+#include "spot/base/errors.hpp"
+
+namespace spot {
+
+namespace {
+
+/// A grain that goes to a cell of another rank.
+struct Migrant {
+  std::int64_t id;
+  Cell cell;
+  Point point, correction;
+};
+
+/// What has become of a slot in a layer that another rank holds a copy of.
+struct Change {
+  std::uint32_t in_layer, in_cell;
+  std::int64_t id;
+  Point point, reference;
+};
+
+struct Position {
+  std::int32_t x, y, z;
+};
+
+constexpr std::array<Side, 2> sides = {below, above};
+
+}  // namespace
+
+GhostLayers::GhostLayers(Cells& cells, NeighbourLists& lists, std::shared_ptr<Communicator> communicator)
+    : cells_(cells), lists_(lists), communicator_(std::move(communicator)) {}
+
+void GhostLayers::emigrate(std::uint32_t slot, const Cell& to) {
+  append(migrants_[to.z < cells_.first_own_layer() ? below : above],
+         Migrant{cells_.ids[slot], to, cells_.points[slot], cells_.corrections[slot]});
+  lists_.unlist(slot);
+  cells_.vacate(slot);
+}
+
+void GhostLayers::exchange_migrants(const Container& container) {
+  const auto arrived = communicator_->exchange_with_neighbours(std::move(migrants_));
+  migrants_ = {};
+  for (const Bytes& bytes : arrived)
+    for (ByteReader reader(bytes); !reader.at_end();) {
+      const auto migrant = reader.take<Migrant>();
+      const Slabs& slabs = cells_.slabs();
+      if (slabs.owner(migrant.cell.z) != communicator_->rank())
+        throw InvalidPacking(message("grain ", migrant.id,
+                                     " has crossed all layers of a rank between two list updates; ", "the ",
+                                     slabs.layers(), " layers are too few for ", slabs.ranks(), " ranks"));
+      const Place place = cells_.ensure_room(cells_.lattice().number_of(migrant.cell));
+      const std::uint32_t at = cells_.slot(place);
+      cells_.occupy(at, migrant.id, migrant.point, migrant.point);
+      cells_.corrections[at] = migrant.correction;
+      lists_.list(at, container);
+    }
+}
+
+void GhostLayers::exchange(const Container& container) {
+  if (communicator_->size() == 1) return;
+  std::array<Bytes, 2> outgoing;
+  for (const Side side : sides)
+    if (cells_.has_ghosts(side)) outgoing[side] = changes(side);
+  const auto incoming = communicator_->exchange_with_neighbours(std::move(outgoing));
+  for (const Side side : sides)
+    if (cells_.has_ghosts(side)) take_changes(incoming[side], side, container);
+}
+
+void GhostLayers::choose(std::int32_t parts) {
+  sent_.resize(cells_.count());
+  for (const Side side : sides) {
+    if (!cells_.has_ghosts(side)) continue;
+    for (const std::uint32_t first : {cells_.first_of_border(side), cells_.first_of_ghosts(side)})
+      for (std::uint32_t cell = first; cell < first + cells_.in_layer(); ++cell)
+        sent_[cell] = cells_.unrelaxed[cell] >= parts;
+  }
+}
+
+/// Calls visit(point) for all grains of the chosen cells of a layer, in order.
+template <typename Visit>
+void GhostLayers::visit_sent(std::uint32_t first_cell, const Visit& visit) const {
+  for (std::uint32_t cell = first_cell; cell < first_cell + cells_.in_layer(); ++cell)
+    if (sent_[cell] != 0) cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.points[slot]); });
+}
+
+/// What has changed in the layer next to a neighbour's since it was told last, the moves that its cells have received,
+/// and where the grains of the chosen cells are.
+Bytes GhostLayers::changes(Side side) {
+  std::vector<Change> changed;
+  const std::uint32_t first = cells_.first_of_border(side);
+  for (const Place& place : cells_.take_changes(side)) {
+    const std::uint32_t slot = cells_.slot(place);
+    changed.push_back(
+        {place.cell - first, place.in_cell, cells_.ids[slot], cells_.points[slot], cells_.references[slot]});
+  }
+  Bytes bytes;
+  append(bytes, changed);
+  const auto unrelaxed = cells_.unrelaxed.begin() + first;
+  append(bytes, std::vector<std::int32_t>(unrelaxed, unrelaxed + cells_.in_layer()));
+  visit_sent(first, [&](const Point& point) { append(bytes, Position{point.x, point.y, point.z}); });
+  return bytes;
+}
+
+void GhostLayers::take_changes(const Bytes& bytes, Side side, const Container& container) {
+  ByteReader reader(bytes);
+  const std::uint32_t first = cells_.first_of_ghosts(side);
+  const auto changed = reader.take_all<Change>();
+  const auto place_of = [&](const Change& change) { return Place{first + change.in_layer, change.in_cell}; };
+  // Slots may be named more than once: what they hold now is what all of these say.
+  for (const Change& change : changed) {
+    cells_.ensure_place(place_of(change));
+    const std::uint32_t at = cells_.slot(place_of(change));
+    if (!cells_.occupied(at)) continue;
+    lists_.unlist(at);
+    cells_.vacate(at);
+  }
+  for (const Change& change : changed)
+    if (change.id >= 0) cells_.occupy(cells_.slot(place_of(change)), change.id, change.point, change.reference);
+  for (const Change& change : changed)
+    if (change.id >= 0) lists_.list(cells_.slot(place_of(change)), container);
+  const auto unrelaxed = reader.take_all<std::int32_t>();
+  std::copy(unrelaxed.begin(), unrelaxed.end(), cells_.unrelaxed.begin() + first);
+  visit_sent(first, [&](Point& point) {
+    const auto at = reader.take<Position>();
+    point.x = at.x;
+    point.y = at.y;
+    point.z = at.z;
+  });
+}
+
+}  // namespace spot

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/walk/spots.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "spot/base/memory.hpp"
+#include "spot/walk/calibration.hpp"
+#include "walk/packed_spot.hpp"
+
+namespace spot {
+
+Spots::Spots(const SpotParameters& parameters, const Container& container, double diameter)
+    : walk_(parameters, container),
+      next_birth_(walk_.time_before_birth(0)),
+      dilates_(parameters.dilation > 0.0),
+      dilation_(parameters, container, diameter),
+      setting_interval_(dilates_ ? calibration::climb_between_settings * parameters.radius / parameters.speed : 0.0) {}
+
+/// Returns whether the newborn spot was kept.
+bool Spots::bear_next(const Container& container, const Belongs& here) {
+  Spot spot = walk_.birth(born_, next_birth_, container);
+  const bool kept = here(spot);
+  if (kept) {
+    if (dilates_) walk_.set_relative_speed(spot, next_birth_, dilation_.relative_speed(spot.position));
+    places_.push_back({spot, false});
+  }
+  next_birth_ += walk_.time_before_birth(++born_);
+  return kept;
+}
+
+void Spots::give_birth(double until, const Container& container, const Belongs& here) {
+  while (next_birth_ <= until) bear_next(container, here);
+}
+
+void Spots::set_relative_speeds(double now, Communicator& communicator) {
+  if (!dilates_) return;
+  std::vector<Vector3> positions;
+  for (const Place& place : places_)
+    if (!place.removed) positions.push_back(place.spot.position);
+  dilation_.count(positions, communicator);
+  for (Place& place : places_)
+    if (!place.removed) walk_.set_relative_speed(place.spot, now, dilation_.relative_speed(place.spot.position));
+  queued_ = false;
+}
+
+void Spots::step_until(double until, const Container& container,
+                       const std::function<void(const Spot&, const std::vector<Move>&)>& visit) {
+  std::vector<Move> moves;
+  for (Place& place : places_) {
+    if (place.removed) continue;
+    moves.clear();
+    while (place.spot.next_step <= until) moves.push_back(walk_.step(place.spot, container));
+    if (!moves.empty()) visit(place.spot, moves);
+  }
+  queued_ = false;
+}
+
+void Spots::queue(std::size_t place) {
+  events_.push_back({places_[place].spot.next_step, places_[place].spot.id, place});
+  std::push_heap(events_.begin(), events_.end());
+}
+
+void Spots::queue_all() {
+  events_.clear();
+  for (std::size_t k = 0; k < places_.size(); ++k)
+    if (!places_[k].removed) events_.push_back({places_[k].spot.next_step, places_[k].spot.id, k});
+  std::make_heap(events_.begin(), events_.end());
+  queued_ = true;
+}
+
+void Spots::drop_removed_events() {
+  while (!events_.empty() && places_[events_.front().place].removed) {
+    std::pop_heap(events_.begin(), events_.end());
+    events_.pop_back();
+  }
+}
+
+/// When relative speeds are to be set next.
+double Spots::next_setting() const {
+  return setting_interval_ > 0.0 ? static_cast<double>(settings_) * setting_interval_
+                                 : std::numeric_limits<double>::infinity();
+}
+
+std::optional<Move> Spots::next_step(double time, const Container& container) {
+  while (true) {
+    if (!queued_) queue_all();
+    drop_removed_events();
+    const double event = events_.empty() ? next_birth_ : std::min(next_birth_, events_.front().time);
+    if (next_setting() <= std::min(event, time)) {
+      Alone alone;
+      set_relative_speeds(next_setting(), alone);
+      ++settings_;
+    } else if (event <= time && event == next_birth_) {
+      bear_next(container, [](const Spot&) { return true; });
+      queue(places_.size() - 1);
+    } else {
+      break;
+    }
+  }
+  if (events_.empty() || events_.front().time > time) return std::nullopt;
+  std::pop_heap(events_.begin(), events_.end());
+  const std::size_t place = events_.back().place;
+  events_.pop_back();
+  const Move move = walk_.step(places_[place].spot, container);
+  queue(place);
+  return move;
+}
+
+void Spots::remove(std::int64_t spot) {
+  const auto place = std::lower_bound(places_.begin(), places_.end(), spot,
+                                      [](const Place& a, std::int64_t id) { return a.spot.id < id; });
+  if (place == places_.end() || place->spot.id != spot || place->removed) return;
+  place->removed = true;
+  if (++removed_ > places_.size() / 16) close_gaps();
+}
+
+void Spots::close_gaps() {
+  places_.erase(std::remove_if(places_.begin(), places_.end(), [](const Place& place) { return place.removed; }),
+                places_.end());
+  removed_ = 0;
+  queued_ = false;
+}
+
+std::vector<Spot> Spots::take_out_others(const Belongs& here) {
+  std::vector<Spot> others;
+  for (Place& place : places_) {
+    if (place.removed || here(place.spot)) continue;
+    others.push_back(place.spot);
+    place.removed = true;
+  }
+  close_gaps();
+  return others;
+}
+
+void Spots::take_in(const std::vector<Spot>& spots) {
+  if (spots.empty()) return;
+  for (const Spot& spot : spots) places_.push_back({spot, false});
+  std::sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) { return a.spot.id < b.spot.id; });
+  queued_ = false;
+}
+
+std::vector<Spot> Spots::live() const {
+  std::vector<Spot> spots;
+  for (const Place& place : places_)
+    if (!place.removed) spots.push_back(place.spot);
+  return spots;
+}
+
+void Spots::save(Bytes& bytes) const {
+  append(bytes, born_);
+  append(bytes, next_birth_);
+  append(bytes, live());
+  append(bytes, settings_);
+  dilation_.save(bytes);
+}
+
+void Spots::restore(ByteReader& saved) {
+  born_ = saved.take<std::int64_t>();
+  next_birth_ = saved.take<double>();
+  take_in(take_spots(saved));
+  settings_ = saved.take<std::int64_t>();
+  dilation_.restore(saved);
+}
+
+std::size_t Spots::memory() const { return bytes_in(places_, events_) + dilation_.memory(); }
+
+}  // namespace spot
