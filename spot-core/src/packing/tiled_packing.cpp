@@ -256,7 +256,8 @@ void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit) 
   for (std::uint32_t index = first_owned(); index < last_owned(); ++index) {
     const Cell at = cell(index);
     for (std::uint32_t slot = index * capacity_; slot < (index + 1) * capacity_; ++slot)
-      if (ids_[slot] >= 0) visit({ids_[slot], low_ + from_low(points_[slot], at), points_[slot].state == Point::held});
+      if (ids_[slot] >= 0)
+        visit({ids_[slot], low_ + from_low(points_[slot], at), points_[slot].state == Point::held, 0.5 * diameter_});
   }
 }
 
