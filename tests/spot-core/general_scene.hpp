@@ -12,6 +12,8 @@
 #include "scenes.hpp"
 #include "spot/drivers/drainage.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
+#include "spot/geometry/base_plate.hpp"
+#include "spot/geometry/plane_wall.hpp"
 
 namespace scenes {
 

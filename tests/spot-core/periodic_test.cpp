@@ -254,7 +254,7 @@ TEST(RelaxationUnit, WallsPushEachGrainByItsRadius) {
 TEST(DisplacementBruteForce, UnequalGrainsAcrossTheEndsOfTheCell) {
   const auto container = scenes::empty_space();
   for (const Periodic& periodic : all_periods)
-    for (const auto profile : {spot::InfluenceProfile::uniform, spot::InfluenceProfile::parabolic}) {
+    for (const auto* profile : {spot::InfluenceProfile::uniform, spot::InfluenceProfile::parabolic}) {
       scenes::Draws draws(5);
       Packing packing(1.0, 100.0, unequal(periodic, 3), periodic);
       spot::SpotParameters spots{1.9, 0.02};
@@ -276,8 +276,8 @@ TEST(DisplacementBruteForce, UnequalGrainsAcrossTheEndsOfTheCell) {
         }
         packing.refresh(*container);
         packing.find_movable(move.middle, 2.5, near);
-        const int shares = spot::enclosed_shares(packing, near, move, spots);
-        EXPECT_NEAR(shares, volume * spot::whole_share, 1.5 * enclosed);  // whole parts of each
+        const int shares = spot::enclosed_volume(packing, near, move, spots);
+        EXPECT_NEAR(shares, volume * spot::grain_volume, 1.5 * enclosed);  // whole parts of each
         EXPECT_EQ(spot::displace(packing, near, move, spots), shares);
         const std::vector<Grain> grains = packing.grains();
         for (std::size_t i = 0; i < grains.size(); ++i)
@@ -293,9 +293,9 @@ TEST(PackingUnit, RadiiAreKeptAndBadOnesNamed) {
   EXPECT_EQ(grains[0].radius, 1.0);
   EXPECT_EQ(grains[1].radius, 0.5);
   EXPECT_EQ(grains[2].radius, 0.75);
-  EXPECT_EQ(packing.volume(scenes::index_of(packing, 1)), spot::whole_share);
-  EXPECT_EQ(packing.volume(scenes::index_of(packing, 2)), spot::whole_share / 8);
-  EXPECT_EQ(packing.volume(scenes::index_of(packing, 3)), spot::whole_share * 27 / 64);
+  EXPECT_EQ(packing.volume(scenes::index_of(packing, 1)), spot::grain_volume);
+  EXPECT_EQ(packing.volume(scenes::index_of(packing, 2)), spot::grain_volume / 8);
+  EXPECT_EQ(packing.volume(scenes::index_of(packing, 3)), spot::grain_volume * 27 / 64);
   EXPECT_EQ(packing.remove(scenes::index_of(packing, 2)).radius, 0.5);
   for (const double bad : {0.49, 1.01, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
     EXPECT_THAT(scenes::text_of<InvalidPacking>([&] {
