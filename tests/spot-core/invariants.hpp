@@ -18,12 +18,13 @@ namespace invariants {
 
 /// How deeply grains overlap.
 struct Overlaps {
-  double largest = 0.0;  ///< in diameters
-  double badness = 0.0;  ///< B: sum over grains and partners of the square overlap in diameters, a grain (2010)
+  double largest = 0.0;  ///< over the sum of two radii
+  double badness = 0.0;  ///< B: sum over grains and partners of the square of the same, a grain (2010)
 };
 
 /// Overlaps of all pairs, over a grid of cells of its own.
-inline Overlaps overlaps_of(const std::vector<spot::Grain>& grains, double diameter) {
+inline Overlaps overlaps_of(const std::vector<spot::Grain>& grains, double diameter,
+                            const spot::Periodic& periodic = {}) {
   Overlaps overlaps;
   if (grains.empty()) return overlaps;
   spot::Vector3 low = grains.front().position, high = low;
@@ -31,11 +32,12 @@ inline Overlaps overlaps_of(const std::vector<spot::Grain>& grains, double diame
     low = low.cwiseMin(grain.position);
     high = high.cwiseMax(grain.position);
   }
-  spot::CellGrid grid(low, high, diameter);
+  spot::CellGrid grid(low, high, diameter, periodic);
   for (std::uint32_t i = 0; i < grains.size(); ++i) {
     const spot::Vector3& centre = grains[i].position;
     grid.visit_near(centre, diameter, [&](std::uint32_t j) {
-      const double overlap = 1.0 - (grains[j].position - centre).norm() / diameter;
+      const double touching = spot::radius_in(diameter, grains[i]) + spot::radius_in(diameter, grains[j]);
+      const double overlap = 1.0 - periodic.nearest(spot::Vector3(grains[j].position - centre)).norm() / touching;
       if (overlap <= 0.0) return;
       overlaps.largest = std::max(overlaps.largest, overlap);
       overlaps.badness += 2.0 * overlap * overlap;
@@ -91,7 +93,8 @@ class Ledger {
       if (!grain.position.allFinite() || grain.position.z() >= limits_.outlet)
         return spot::message("grain ", grain.id, " drained at z = ", grain.position.z());
       // Below the hole grains spread no farther than they have come down.
-      const double from_axis = (grain.position - orifice.centre).head<2>().norm();
+      const double from_axis =
+          container_.periodic().nearest(spot::Vector3(grain.position - orifice.centre)).head<2>().norm();
       if (guards_base_ && from_axis > orifice.radius + orifice.centre.z() - grain.position.z())
         return spot::message("grain ", grain.id, " went through the base, ", from_axis, " from the axis");
     }
@@ -106,15 +109,21 @@ class Ledger {
       if (!seen.insert(grain.id).second) return spot::message("grain ", grain.id, " is there twice");
       if (drained_.count(grain.id) != 0) return spot::message("grain ", grain.id, " is there and drained");
       if (!grain.position.allFinite()) return spot::message("position of grain ", grain.id, " is not finite");
+      if (grain.radius != spot::radius_in(diameter_, found->second))
+        return spot::message("the radius of grain ", grain.id, " has changed");
       if (grain.held != found->second.held) return spot::message("grain ", grain.id, " was held or let go");
-      if (grain.held && (grain.position - found->second.position).norm() > 1e-6 * diameter_)
+      if (grain.held && apart(grain, found->second) > 1e-6 * diameter_)
         return spot::message("grain ", grain.id, " moved although it is held");
     }
     if (seen.size() + drained_.size() != start_.size())
       return spot::message(start_.size(), " grains at the start, but ", seen.size(), " left and ", drained_.size(),
                            " drained");
-    overlaps_ = overlaps_of(left, diameter_);
+    overlaps_ = overlaps_of(left, diameter_, container_.periodic());
     return {};
+  }
+
+  double apart(const spot::Grain& a, const spot::Grain& b) const {
+    return container_.periodic().nearest(spot::Vector3(a.position - b.position)).norm();
   }
 
   double diameter_;

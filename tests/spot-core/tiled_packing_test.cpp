@@ -604,7 +604,7 @@ TEST(TiledPackingUnit, NegativeIdsAreNamedAndZeroIsAnId) {
                   TiledPacking(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {bad, {3, 1, 1}}}, *space);
                 }),
                 HasSubstr("grain id " + std::to_string(bad) + " is negative"));
-  const std::vector<Grain> grains = {{0, {1, 1, 1}}, {std::numeric_limits<std::int64_t>::max(), {3, 1, 1}}};
+  const std::vector<Grain> grains = {{0, {1, 1, 1}, false, 0.5}, {std::numeric_limits<std::int64_t>::max(), {3, 1, 1}, false, 0.5}};
   EXPECT_EQ(sorted_grains(TiledPacking(1.0, 100.0, 0.0, grains, *space)), grains);
 }
 

@@ -23,6 +23,7 @@ void Periodic::set(int axis, const std::optional<Interval>& interval) {
     throw InvalidContainer(message("ends of the period along ", names[axis], " are ", low, " and ", high,
                                    " but must be finite and in increasing order"));
   const auto a = static_cast<std::size_t>(axis);
+  any_ = true;
   low_[a] = low;
   high_[a] = high;
   length_[a] = high - low;

@@ -88,7 +88,10 @@ void BlockMoves::find(Part& part, const std::vector<Move>& moves, double radius)
     for (std::size_t r = before; r < part.rows.size(); ++r) {
       const CellRow& row = part.rows[r];
       const std::uint32_t first = cells_.first_slot(row.first), n = cells_.first_slot(row.last) - first;
-      enclosed += kernels_.enclosed_volume(cells_.points.data() + first, n, middles_[m], reach_);
+      enclosed += cells_.unequal()
+                      ? kernels_.enclosed_volume_of_unequal(cells_.points.data() + first, cells_.sizes.data() + first,
+                                                            n, middles_[m], reach_)
+                      : kernels_.enclosed_volume(cells_.points.data() + first, n, middles_[m], reach_);
       cells_reached_[cells_.layer_of(row.first)] += row.last - row.first;
     }
     part.end_of_rows.push_back(part.rows.size());

@@ -44,6 +44,7 @@ void Cells::hold(const Slabs& slabs, int rank) {
   references.assign(slots, nobody);
   corrections.assign(slots, {0, 0, 0, 0});
   ids.assign(slots, -1);
+  if (unequal_) sizes.assign(slots, size_of(0.5 * lattice_.diameter()));
   unrelaxed.assign(n, 0);
   drift.assign(n, 0);
   changed_ = {};
@@ -52,6 +53,23 @@ void Cells::hold(const Slabs& slabs, int rank) {
 }
 
 std::uint32_t Cells::first_of_border(Side side) const { return side == below ? first_own() : last_own() - in_layer(); }
+
+// ---- sizes
+
+GrainSize Cells::size_of(double radius) const {
+  return {radius, static_cast<float>(radius / lattice_.quantum().length()),
+          static_cast<float>(volume_parts(lattice_.diameter(), radius))};
+}
+
+void Cells::allow_unequal() {
+  if (unequal_) return;
+  unequal_ = true;
+  sizes.assign(slots(), size_of(0.5 * lattice_.diameter()));
+}
+
+void Cells::set_radius(std::uint32_t slot, double radius) {
+  if (unequal_) sizes[slot] = size_of(radius);
+}
 
 // ---- slots
 
@@ -92,6 +110,7 @@ void Cells::give_room(std::uint32_t cell) {
   spread(references, nobody);
   spread(corrections, Point{0, 0, 0, 0});
   spread(ids, std::int64_t{-1});
+  if (unequal_) spread(sizes, size_of(0.5 * lattice_.diameter()));
   first_slot_ = std::move(first);
   cell_of_.resize(slots);
   for (std::uint32_t c = 0; c < count(); ++c)
@@ -128,7 +147,9 @@ void Cells::note_change(std::uint32_t slot) {
 
 // ---- the rest
 
-Grain Cells::grain(std::uint32_t slot) const { return {ids[slot], position(slot), points[slot].state == Point::held, 0.5 * lattice_.diameter()}; }
+Grain Cells::grain(std::uint32_t slot) const {
+  return {ids[slot], position(slot), points[slot].state == Point::held, radius(slot)};
+}
 
 std::vector<std::int64_t> Cells::grains_in_own_layers() const {
   std::vector<std::int64_t> grains(static_cast<std::size_t>(own_layers()), 0);
@@ -137,8 +158,8 @@ std::vector<std::int64_t> Cells::grains_in_own_layers() const {
 }
 
 std::size_t Cells::memory() const {
-  return bytes_in(points, references, corrections, ids, unrelaxed, drift, in_motion, first_slot_, cell_of_, changed_[0],
-                  changed_[1]);
+  return bytes_in(points, references, corrections, ids, sizes, unrelaxed, drift, in_motion, first_slot_, cell_of_,
+                  changed_[0], changed_[1]);
 }
 
 }  // namespace spot

@@ -14,6 +14,7 @@ struct Migrant {
   std::int64_t id;
   Cell cell;
   Point point, correction;
+  double radius;
 };
 
 /// What has become of a slot in a layer that another rank holds a copy of.
@@ -21,6 +22,7 @@ struct Change {
   std::uint32_t in_layer, in_cell;
   std::int64_t id;
   Point point, reference;
+  double radius;
 };
 
 struct Position {
@@ -36,7 +38,7 @@ GhostLayers::GhostLayers(Cells& cells, NeighbourLists& lists, std::shared_ptr<Co
 
 void GhostLayers::emigrate(std::uint32_t slot, const Cell& to) {
   append(migrants_[to.z < cells_.first_own_layer() ? below : above],
-         Migrant{cells_.ids[slot], to, cells_.points[slot], cells_.corrections[slot]});
+         Migrant{cells_.ids[slot], to, cells_.points[slot], cells_.corrections[slot], cells_.radius(slot)});
   lists_.unlist(slot);
   cells_.vacate(slot);
 }
@@ -56,6 +58,7 @@ void GhostLayers::exchange_migrants(const Container& container) {
       const std::uint32_t at = cells_.slot(place);
       cells_.occupy(at, migrant.id, migrant.point, migrant.point);
       cells_.corrections[at] = migrant.correction;
+      cells_.set_radius(at, migrant.radius);
       lists_.list(at, container);
     }
 }
@@ -94,8 +97,8 @@ Bytes GhostLayers::changes(Side side) {
   const std::uint32_t first = cells_.first_of_border(side);
   for (const Place& place : cells_.take_changes(side)) {
     const std::uint32_t slot = cells_.slot(place);
-    changed.push_back(
-        {place.cell - first, place.in_cell, cells_.ids[slot], cells_.points[slot], cells_.references[slot]});
+    changed.push_back({place.cell - first, place.in_cell, cells_.ids[slot], cells_.points[slot],
+                       cells_.references[slot], cells_.radius(slot)});
   }
   Bytes bytes;
   append(bytes, changed);
@@ -118,8 +121,11 @@ void GhostLayers::take_changes(const Bytes& bytes, Side side, const Container& c
     lists_.unlist(at);
     cells_.vacate(at);
   }
-  for (const Change& change : changed)
-    if (change.id >= 0) cells_.occupy(cells_.slot(place_of(change)), change.id, change.point, change.reference);
+  for (const Change& change : changed) {
+    if (change.id < 0) continue;
+    cells_.occupy(cells_.slot(place_of(change)), change.id, change.point, change.reference);
+    cells_.set_radius(cells_.slot(place_of(change)), change.radius);
+  }
   for (const Change& change : changed)
     if (change.id >= 0) lists_.list(cells_.slot(place_of(change)), container);
   const auto unrelaxed = reader.take_all<std::int32_t>();

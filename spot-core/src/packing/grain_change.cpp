@@ -60,6 +60,7 @@ std::vector<Grain> GrainChange::stay_under_other_ids(const std::vector<Grain>& c
       const Grain grain = take_grain(reader);
       const auto found = slot_at.find(lattice.quanta(grain.position - lattice.low()));
       if (found == slot_at.end()) continue;
+      if (radius_in(packing_.diameter(), grain) != cells.radius(found->second)) continue;
       cells.ids[found->second] = grain.id;
       cells.points[found->second].state = grain.held ? Point::held : Point::free;
       cells.note_change(found->second);

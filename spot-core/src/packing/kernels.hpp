@@ -31,6 +31,12 @@ struct Push {
   float fixed_share;  ///< of the overlap, by which a grain moves if the other stays
 };
 
+/// How unequal grains do: those of radii a and b go apart until they are (a + b) `touch` from each other.
+struct UnequalPush {
+  float touch;
+  float pair_share, fixed_share;  ///< as above
+};
+
 /// One build of all kernels. They are compiled several times, for different instruction sets, from kernels.inl; results
 /// are the same bits for all: every number goes through the same operations (-ffp-contract=off), and sums are of
 /// integers. Lengths are in quanta, their squares in single precision.
@@ -49,6 +55,12 @@ struct Kernels {
   /// deeper ones are pushed apart by somewhat less, which another sweep makes good.
   void (*push_off_neighbours)(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                               const Push& push, Point* pushes);
+
+  /// The same two of unequal grains, where each has its own radius and counts by its own volume.
+  int (*enclosed_volume_of_unequal)(const Point* points, const GrainSize* sizes, std::size_t n, const Point& middle,
+                                    const Reach& reach);
+  void (*push_off_unequal_neighbours)(const Point* points, const GrainSize* sizes, const std::uint32_t* grains,
+                                      std::size_t n, const Lists& lists, const UnequalPush& push, Point* pushes);
 
   /// Corrects the grains of some cells, one cell after the other, `in_cell` of them in each: a grain moves by its push
   /// and by the part `kept` of its last correction, cut to whole quanta, and remembers that as its last. It is not due

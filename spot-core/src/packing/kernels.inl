@@ -24,24 +24,79 @@ inline const std::uint32_t* list_of(const Lists& lists, std::uint32_t point) {
   return lists.neighbours + static_cast<std::size_t>(lists.block[point]) * spot::kernels::lanes;
 }
 
-#ifndef __AVX2__
+inline float square(std::int32_t difference) { return static_cast<float>(difference) * static_cast<float>(difference); }
 
-float square(std::int32_t difference) { return static_cast<float>(difference) * static_cast<float>(difference); }
-
-float square_distance(const Point& a, const Point& b, std::int32_t states_seen) {
+inline float square_distance(const Point& a, const Point& b, std::int32_t states_seen) {
   return (square(a.x - b.x) + square(a.y - b.y)) + (square(a.z - b.z) + square((a.state - b.state) & states_seen));
 }
 
-void add(Point& point, std::int32_t x, std::int32_t y, std::int32_t z) {
+inline void add(Point& point, std::int32_t x, std::int32_t y, std::int32_t z) {
   point.x += x;
   point.y += y;
   point.z += z;
 }
 
-float share(const Point& point, const Point& middle, const Reach& reach) {
+inline float share(const Point& point, const Point& middle, const Reach& reach) {
   const float linear = (reach.radius_squared - square_distance(point, middle, -1)) * reach.per_square;
   return linear > 0.0f ? linear < 1.0f ? linear : 1.0f : 0.0f;
 }
+
+/// Which radii grains have decides how deep two of them overlap: 1 - r^2 / p^2, with p the distance at which they are
+/// left alone.
+struct EqualGrains {
+  float per_square;  // 1 / p^2
+  float overlap(float squared, std::uint32_t, std::uint32_t) const { return 1.0f - squared * per_square; }
+};
+
+struct UnequalGrains {
+  const spot::GrainSize* sizes;
+  float touch;
+  float overlap(float squared, std::uint32_t a, std::uint32_t b) const {
+    const float parted = (sizes[a].in_quanta + sizes[b].in_quanta) * touch;
+    return 1.0f - squared / (parted * parted);
+  }
+};
+
+template <typename Shares, typename Grains>
+void push_off(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
+              const Shares& shares, const Grains& radii, Point* pushes) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point& own = points[grains[i]];
+    const std::uint32_t* list = list_of(lists, grains[i]);
+    Point sum = {0, 0, 0, 0};
+    float depth = 0.0f;
+    for (std::uint32_t k = 0; k < lists.size[grains[i]]; ++k) {
+      const Point& other = points[list[k]];
+      const float dx = static_cast<float>(own.x - other.x), dy = static_cast<float>(own.y - other.y),
+                  dz = static_cast<float>(own.z - other.z);
+      const float s = radii.overlap((dx * dx + dy * dy) + dz * dz, grains[i], list[k]);
+      if (!(s > 0.0f)) continue;
+      const float share = other.state == Point::due ? shares.pair_share : shares.fixed_share;
+      const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
+      add(sum, static_cast<std::int32_t>(scale * dx), static_cast<std::int32_t>(scale * dy),
+          static_cast<std::int32_t>(scale * dz));
+      if (s > depth) depth = s;
+    }
+    __builtin_memcpy(&sum.state, &depth, sizeof depth);
+    pushes[i] = sum;
+  }
+}
+
+void push_off_unequal_neighbours(const Point* points, const spot::GrainSize* sizes, const std::uint32_t* grains,
+                                 std::size_t n, const Lists& lists, const spot::kernels::UnequalPush& push,
+                                 Point* pushes) {
+  push_off(points, grains, n, lists, push, UnequalGrains{sizes, push.touch}, pushes);
+}
+
+int enclosed_volume_of_unequal(const Point* points, const spot::GrainSize* sizes, std::size_t n, const Point& middle,
+                               const Reach& reach) {
+  int enclosed = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    enclosed += static_cast<int>(share(points[i], middle, reach) * sizes[i].volume);
+  return enclosed;
+}
+
+#ifndef __AVX2__
 
 int enclosed_volume(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
   int shares = 0;
@@ -78,26 +133,7 @@ float farthest(const Point* points, const Point* references, std::size_t n) {
 
 void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                          const spot::kernels::Push& push, Point* pushes) {
-  for (std::size_t i = 0; i < n; ++i) {
-    const Point& own = points[grains[i]];
-    const std::uint32_t* list = list_of(lists, grains[i]);
-    Point sum = {0, 0, 0, 0};
-    float depth = 0.0f;
-    for (std::uint32_t k = 0; k < lists.size[grains[i]]; ++k) {
-      const Point& other = points[list[k]];
-      const float dx = static_cast<float>(own.x - other.x), dy = static_cast<float>(own.y - other.y),
-                  dz = static_cast<float>(own.z - other.z);
-      const float s = 1.0f - ((dx * dx + dy * dy) + dz * dz) * push.per_square;
-      if (!(s > 0.0f)) continue;
-      const float share = other.state == Point::due ? push.pair_share : push.fixed_share;
-      const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
-      add(sum, static_cast<std::int32_t>(scale * dx), static_cast<std::int32_t>(scale * dy),
-          static_cast<std::int32_t>(scale * dz));
-      if (s > depth) depth = s;
-    }
-    __builtin_memcpy(&sum.state, &depth, sizeof depth);
-    pushes[i] = sum;
-  }
+  push_off(points, grains, n, lists, push, EqualGrains{push.per_square}, pushes);
 }
 
 std::int32_t kept_of(std::int32_t last, float kept) {
@@ -377,7 +413,15 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 namespace spot::kernels {
 
 extern const Kernels SPOT_KERNELS;
-const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET, &enclosed_volume, &displace,    &push_off_neighbours, &correct,
-                              &find_within,         &farthest,        &find_reached};
+const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET,
+                              &enclosed_volume,
+                              &displace,
+                              &push_off_neighbours,
+                              &enclosed_volume_of_unequal,
+                              &push_off_unequal_neighbours,
+                              &correct,
+                              &find_within,
+                              &farthest,
+                              &find_reached};
 
 }  // namespace spot::kernels

@@ -85,8 +85,9 @@ void Packing::find_movable(const Vector3& point, double reach, std::vector<std::
   // next one takes its place unless it counts.
   grid_.visit_near(point, reach + half_skin_, [&, x = x(), y = y(), z = z(), held = held_.data()](std::uint32_t i) {
     if (n == found.size()) found.resize(2 * n + 64);
-    const double dx = periodic_.nearest(x[i] - point.x(), 0), dy = periodic_.nearest(y[i] - point.y(), 1),
-                 dz = z[i] - point.z();
+    double dx = x[i] - point.x(), dy = y[i] - point.y();
+    const double dz = z[i] - point.z();
+    periodic_.shorten(dx, dy);
     found[n] = i;
     n += (dx * dx + dy * dy + dz * dz <= reach_squared) & (held[i] == 0) ? 1 : 0;
   });
@@ -161,8 +162,9 @@ void Packing::list(std::uint32_t i, const Container& container) {
   reference_z_[i] = z_[i];
   const double reach = diameter_ + 2.0 * half_skin_;
   grid_.visit_near(position(i), reach, [&](std::uint32_t j) {
-    const double dx = periodic_.nearest(reference_x_[j] - x_[i], 0), dy = periodic_.nearest(reference_y_[j] - y_[i], 1),
-                 dz = reference_z_[j] - z_[i];
+    double dx = reference_x_[j] - x_[i], dy = reference_y_[j] - y_[i];
+    const double dz = reference_z_[j] - z_[i];
+    periodic_.shorten(dx, dy);
     if (dx * dx + dy * dy + dz * dz >= reach * reach) return;
     add_neighbour(i, j);
     add_neighbour(j, i);

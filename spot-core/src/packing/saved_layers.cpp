@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "packing/saved_layers.hpp"
 
+#include <algorithm>
+
 #include "spot/base/errors.hpp"
 
 namespace spot {
@@ -21,8 +23,8 @@ void append_layers(Bytes& bytes, const Cells& cells, int first, int last) {
     if (cells.unrelaxed[cell] != 0 || cells.drift[cell] != 0)
       saved.cells.push_back({before + cell, cells.unrelaxed[cell], cells.drift[cell]});
     cells.visit(cell, cell + 1, [&](std::uint32_t slot) {
-      saved.grains.push_back(
-          {cells.ids[slot], before + cell, cells.points[slot], cells.references[slot], cells.corrections[slot]});
+      saved.grains.push_back({cells.ids[slot], before + cell, cells.points[slot], cells.references[slot],
+                              cells.corrections[slot], cells.radius(slot)});
     });
   }
   append(bytes, saved.grains);
@@ -41,7 +43,15 @@ void SavedLayers::take(ByteReader& reader, const CellLattice& lattice) {
   take(grains, reader.take_all<SavedGrain>());
   for (const SavedGrain& grain : grains)
     if (grain.id < 0) throw InvalidState(message("the saved state has grain id ", grain.id, ", which is negative"));
+  for (const SavedGrain& grain : grains)
+    if (!(grain.radius >= 0.25 * lattice.diameter() && grain.radius <= 0.5 * lattice.diameter()))
+      throw InvalidState(message("the saved state has grain ", grain.id, " of radius ", grain.radius));
   take(cells, reader.take_all<SavedCell>());
+}
+
+bool SavedLayers::unequal(double diameter) const {
+  return std::any_of(grains.begin(), grains.end(),
+                     [&](const SavedGrain& grain) { return grain.radius != 0.5 * diameter; });
 }
 
 void SavedLayers::fill(Cells& into) const {
@@ -54,6 +64,7 @@ void SavedLayers::fill(Cells& into) const {
     const Place place = into.ensure_room(static_cast<std::uint32_t>(grain.cell - before));
     into.occupy(into.slot(place), grain.id, grain.point, grain.reference);
     into.corrections[into.slot(place)] = grain.correction;
+    into.set_radius(into.slot(place), grain.radius);
   }
   for (const SavedCell& cell : cells) {
     if (!is_own(cell.cell)) continue;

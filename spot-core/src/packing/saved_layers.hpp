@@ -13,6 +13,7 @@ namespace spot {
 struct SavedGrain {
   std::int64_t id, cell;
   Point point, reference, correction;
+  double radius;
 };
 
 struct SavedCell {
@@ -26,6 +27,8 @@ struct SavedLayers {
 
   /// Adds what append_layers() has appended. Throws InvalidState if it is damaged.
   void take(ByteReader& reader, const CellLattice& lattice);
+
+  bool unequal(double diameter) const;
 
   /// Fills the own layers of cells, which are empty; what belongs to others is passed over.
   void fill(Cells& cells) const;

@@ -8,6 +8,7 @@
 
 #include "packing/kernel_builds.hpp"
 #include "packing/packed_grain.hpp"
+#include "packing/push_off_neighbours.hpp"
 #include "packing/wrapped_integers.hpp"
 #include "spot/base/memory.hpp"
 #include "spot/packing/packing.hpp"
@@ -58,12 +59,14 @@ TiledPacking::TiledPacking(double diameter, double extent, double outlet, const 
   std::vector<std::int64_t> in_layer(static_cast<std::size_t>(lattice.layers()), 0);
   for (const Grain& grain : checked) ++in_layer[static_cast<std::size_t>(lattice.layer(grain.position.z()))];
   set_slabs(Slabs(communicator_->sum(in_layer), communicator_->size()));
+  if (some_are_smaller(checked)) cells_.allow_unequal();
   for (const Grain& grain : take_own(checked)) {
     const Vector3 at = grain.position - lattice.low();
     Point point = lattice.wrapped(at);
     if (grain.held) point.state = Point::held;
     const Place place = cells_.ensure_room(lattice.number_of(lattice.cell_at(at)));
     cells_.occupy(cells_.slot(place), grain.id, point, point);
+    cells_.set_radius(cells_.slot(place), grain.radius);
   }
   list_all(container);
 }
@@ -81,6 +84,13 @@ std::vector<Grain> TiledPacking::take_own(const std::vector<Grain>& grains) cons
   for (const Bytes& bytes : communicator_->exchange(std::move(outgoing)))
     for (ByteReader reader(bytes); !reader.at_end();) own.push_back(take_grain(reader));
   return own;
+}
+
+/// Collective.
+bool TiledPacking::some_are_smaller(const std::vector<Grain>& grains) {
+  double least = 0.5 * diameter();
+  for (const Grain& grain : grains) least = std::min(least, radius_in(diameter(), grain));
+  return communicator_->least(std::vector<double>{least})[0] < 0.5 * diameter();
 }
 
 std::pair<int, int> TiledPacking::reached(double height, double radius) const {
@@ -141,6 +151,7 @@ void TiledPacking::move_reference(Place place) {
     const std::uint32_t old = cells_.slot(place), slot = cells_.slot(to);
     cells_.occupy(slot, cells_.ids[old], cells_.points[old], cells_.points[old]);
     cells_.corrections[slot] = cells_.corrections[old];
+    cells_.set_radius(slot, cells_.radius(old));
     lists_.rename(old, slot);
     cells_.vacate(old);
     place = to;
@@ -206,8 +217,7 @@ Overlap TiledPacking::largest_overlap() const {
   double least = square(diameter);
   std::uint32_t n = 0;
   const auto look = [&] {
-    kernels_.push_off_neighbours(cells_.points.data(), grains.data(), n, lists_.view(),
-                                 {static_cast<float>(per_square), 0.0f, 0.0f}, pushes.data());
+    push_off_neighbours(kernels_, cells_, lists_, grains.data(), n, {0.0, 0.0, 0.0}, pushes.data());
     for (std::uint32_t k = 0; k < n; ++k)
       if (depth_of(pushes[k]) > 1.0 - least * per_square - precision) find_larger_overlap(grains[k], least, largest);
     n = 0;
@@ -220,11 +230,14 @@ Overlap TiledPacking::largest_overlap() const {
   return largest;
 }
 
-/// `least`: the squared distance, in quanta, of the two grains with the largest overlap.
+/// `least`: the squared distance, in quanta, of the two grains with the largest overlap, as if they were of the largest
+/// size.
 void TiledPacking::find_larger_overlap(std::uint32_t slot, double& least, Overlap& largest) const {
   const std::int64_t id = cells_.ids[slot];
   for (const std::uint32_t other : lists_.of(slot)) {
-    const double squared = squared_distance(cells_.points[slot], cells_.points[other]);
+    double squared = squared_distance(cells_.points[slot], cells_.points[other]);
+    if (cells_.unequal())
+      squared *= square(cells_.lattice().quanta_of_diameter() / cells_.touching_distance(slot, other));
     if (squared >= least) continue;
     least = squared;
     largest = {1.0 - std::sqrt(squared) * quantum().length() / diameter(), std::min(id, cells_.ids[other]),

@@ -49,6 +49,7 @@ TiledPacking::TiledPacking(double diameter, double extent, const std::vector<Byt
     lattice.span(low, size);
     layers.take(reader, lattice);
   }
+  if (layers.unequal(diameter)) cells_.allow_unequal();
   set_slabs(Slabs(layers.grains_in_layers(lattice), communicator_->size()));
   layers.fill(cells_);
   list_all(container);
@@ -173,6 +174,7 @@ Overlap TiledPacking::change(const std::vector<std::int64_t>& gone, const std::v
   incoming = take_own(incoming);
   if (some_go) change.take_out_going(container);
   change.require_new_ids(incoming);
+  if (some_are_smaller(incoming)) cells_.allow_unequal();
   const CellLattice& lattice = cells_.lattice();
   std::vector<Place> places;
   for (const Grain& grain : incoming) {
@@ -181,6 +183,7 @@ Overlap TiledPacking::change(const std::vector<std::int64_t>& gone, const std::v
     point.state = grain.held ? Point::held : Point::falling;
     places.push_back(cells_.ensure_room(lattice.number_of(lattice.cell_at(at))));
     cells_.occupy(cells_.slot(places.back()), grain.id, point, point);
+    cells_.set_radius(cells_.slot(places.back()), radius_in(diameter(), grain));
   }
   for (const Place& place : places) lists_.list(cells_.slot(place), container);
   ghosts_.send_no_positions();

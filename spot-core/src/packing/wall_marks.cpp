@@ -23,11 +23,16 @@ void WallMarks::find_planes(const Container& container) {
   planes_.clear();
   if (container.axis_planes().size() > most_planes) return;
   for (const AxisPlane& plane : container.axis_planes()) {
-    const double touching =
-        plane.at + (plane.grains_below ? -0.5 : 0.5) * lattice.diameter() - lattice.low()[plane.axis];
-    planes_.push_back({axes[static_cast<std::size_t>(plane.axis)],
-                       wrap(std::llrint(touching / lattice.quantum().length())), plane.grains_below});
+    planes_.push_back(
+        {axes[static_cast<std::size_t>(plane.axis)], plane.at, lattice.low()[plane.axis], plane.grains_below, 0});
+    planes_.back().largest_touch = touching(planes_.back(), 0.5 * lattice.diameter());
   }
+}
+
+/// Where grains of this radius that touch a plane have their centres, in wrapped quanta from low.
+std::int32_t WallMarks::touching(const TouchingPlane& plane, double radius) const {
+  const double place = plane.at + (plane.grains_below ? -radius : radius) - plane.low;
+  return wrap(std::llrint(place / cells_.lattice().quantum().length()));
 }
 
 /// The walls that are not in planes_.
@@ -67,7 +72,8 @@ void WallMarks::push_off_planes(std::uint32_t slot, float strength, Point& push)
   for (std::size_t p = 0; p < planes_.size(); ++p) {
     if ((near_wall_[slot] >> p & 1u) == 0) continue;
     const TouchingPlane& plane = planes_[p];
-    const std::int32_t beyond = minus(cells_.points[slot].*plane.axis, plane.at);
+    const std::int32_t beyond = minus(cells_.points[slot].*plane.axis,
+                                      cells_.unequal() ? touching(plane, cells_.radius(slot)) : plane.largest_touch);
     if (plane.grains_below ? beyond > 0 : beyond < 0)
       push.*plane.axis -= static_cast<std::int32_t>(strength * static_cast<float>(beyond));
   }
@@ -75,7 +81,7 @@ void WallMarks::push_off_planes(std::uint32_t slot, float strength, Point& push)
 
 void WallMarks::push_off_others(std::uint32_t slot, double strength, const Container& container, Point& push) const {
   if ((near_wall_[slot] & near_other_wall) == 0) return;
-  const double radius = 0.5 * cells_.lattice().diameter();
+  const double radius = cells_.radius(slot);
   WallContacts contacts;
   other_contacts(container, cells_.position(slot), radius, contacts);
   for (const WallContact& contact : contacts)

@@ -27,90 +27,94 @@ constexpr double strength = 0.5;
 }  // namespace
 
 bool Bearing::is_borne(std::uint32_t slot) const {
-  const double per_diameter = packing_.quantum().length() / diameter_;
   const Point& own = cells_.points[slot];
   for (const std::uint32_t j : packing_.lists().of(slot)) {
     const Point& other = cells_.points[j];
     if (other.state == Point::falling) continue;
+    const double per_diameter = packing_.quantum().length() / (cells_.radius(slot) + cells_.radius(j));
     if (minus(own.z, other.z) * per_diameter < least_drop) continue;
     if (squared_distance(own, other) * square(per_diameter) <= square(reach_of_support)) return true;
   }
   const Vector3 place = cells_.position(slot);
-  return is_over_orifice(place, wall_reach) || is_near_floor_or_slope(place);
+  const double diameter = 2.0 * cells_.radius(slot);
+  return is_over_orifice(place, wall_reach * diameter) || is_near_floor_or_slope(place, wall_reach * diameter);
 }
 
 bool Bearing::is_over_orifice(const Vector3& place, double reach) const {
   const Orifice& orifice = container_.orifice();
   const double height = place.z() - orifice.centre.z();
-  return height < 0.0 || (height <= reach * diameter_ && (place - orifice.centre).head<2>().norm() <= orifice.radius);
+  return height < 0.0 || (height <= reach && (place - orifice.centre).head<2>().norm() <= orifice.radius);
 }
 
-bool Bearing::is_near_floor_or_slope(const Vector3& place) const {
+bool Bearing::is_near_floor_or_slope(const Vector3& place, double reach) const {
   WallContacts contacts;
-  container_.contacts(place, wall_reach * diameter_, contacts);
+  container_.contacts(place, reach, contacts);
   return std::any_of(contacts.begin(), contacts.end(),
                      [](const WallContact& contact) { return contact.normal.z() >= least_upwards; });
 }
 
 bool Bearing::is_on_floor(std::uint32_t slot) const {
   const Vector3 place = cells_.position(slot);
-  if (is_over_orifice(place, 0.5)) return true;
+  const double diameter = 2.0 * cells_.radius(slot);
+  if (is_over_orifice(place, 0.5 * diameter)) return true;
   WallContacts walls;
-  if (packing_.walls().near_wall(slot)) container_.contacts(place, (0.5 + contact_gap) * diameter_, walls);
+  if (packing_.walls().near_wall(slot)) container_.contacts(place, (0.5 + contact_gap) * diameter, walls);
   return std::any_of(walls.begin(), walls.end(), [](const WallContact& wall) { return wall.normal.z() > flat; });
 }
 
-double Bearing::depth_in_orifice(const Vector3& place) const {
-  const double height = (place.z() - container_.orifice().centre.z()) / diameter_;
-  return height >= 0.0 && is_over_orifice(place, 0.5) ? 0.5 - height : 0.0;
+double Bearing::depth_in_orifice(std::uint32_t slot) const {
+  const Vector3 place = cells_.position(slot);
+  const double diameter = 2.0 * cells_.radius(slot);
+  const double height = (place.z() - container_.orifice().centre.z()) / diameter;
+  return height >= 0.0 && is_over_orifice(place, 0.5 * diameter) ? 0.5 - height : 0.0;
 }
 
 std::vector<Vector3> Bearing::contact_normals(std::uint32_t slot, std::int32_t least) const {
   std::vector<Vector3> normals;
-  const double reach = (1.0 + contact_gap) * cells_.lattice().quanta_of_diameter();
   const Point& own = cells_.points[slot];
   for (const std::uint32_t j : packing_.lists().of(slot)) {
     const Point& other = cells_.points[j];
     const bool bears = other.state != Point::falling && (other.state != Point::resting || least == Point::resting);
-    if (!bears || squared_distance(own, other) > square(reach)) continue;
+    if (!bears || squared_distance(own, other) > square((1.0 + contact_gap) * cells_.touching_distance(slot, j)))
+      continue;
     const Point by = minus(own, other);
     const Vector3 normal = Vector3(by.x, by.y, by.z);
     if (normal.squaredNorm() > 0.0) normals.push_back(normal.normalized());
   }
   WallContacts walls;
   if (packing_.walls().near_wall(slot))
-    container_.contacts(cells_.position(slot), (0.5 + contact_gap) * diameter_, walls);
+    container_.contacts(cells_.position(slot), (0.5 + contact_gap) * (2.0 * cells_.radius(slot)), walls);
   for (const WallContact& wall : walls) normals.push_back(wall.normal);
   return normals;
 }
 
 double Bearing::push_off(std::uint32_t slot, const Point& place, double in_contact, Point& push) const {
-  const double parted = (1.0 - in_contact) * cells_.lattice().quanta_of_diameter();
-  double least = square(parted);
+  double depth = 0.0;
   for (const std::uint32_t j : packing_.lists().of(slot)) {
     const Point& other = cells_.points[j];
+    const double parted = (1.0 - in_contact) * cells_.touching_distance(slot, j);
     const double squared = squared_distance(place, other);
     if (squared >= square(parted)) continue;
     const Point by = minus(place, other);
     const bool comes_down = other.state == Point::falling || other.state == Point::resting;
     if (comes_down && (by.z < 0 || (by.z == 0 && cells_.ids[slot] < cells_.ids[j]))) continue;
-    least = std::min(least, squared);
+    depth = std::max(depth, 1.0 - std::sqrt(squared) / parted);
     // Centres that coincide have no line between them.
     const double scale = squared > 0.0 ? strength * (parted / std::sqrt(squared) - 1.0) : 0.0;
     push.x = add(push.x, wrap(std::llrint(scale * by.x)));
     push.y = add(push.y, wrap(std::llrint(scale * by.y)));
     push.z = add(push.z, squared > 0.0 ? wrap(std::llrint(scale * by.z)) : wrap(std::llrint(strength * parted)));
   }
-  double depth = 1.0 - std::sqrt(least) / parted;
+  const double radius = cells_.radius(slot);
   WallContacts walls;
   if (packing_.walls().near_wall(slot)) {
     const Vector3 at = cells_.lattice().low() + cells_.from_low(place, cells_.cell_of(slot));
-    container_.contacts(at, 0.5 * diameter_, walls);
+    container_.contacts(at, radius, walls);
   }
   for (const WallContact& wall : walls) {
-    const double overlap = 0.5 * diameter_ - wall.distance;
+    const double overlap = radius - wall.distance;
     add(push, cells_.lattice().wrapped(strength * overlap * wall.normal));
-    depth = std::max(depth, overlap / diameter_);
+    depth = std::max(depth, overlap / (2.0 * radius));
   }
   return depth;
 }

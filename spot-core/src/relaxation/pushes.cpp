@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/relaxation/pushes.hpp"
 
-#include "packing/kernels.hpp"
+#include "packing/push_off_neighbours.hpp"
 #include "packing/wrapped_integers.hpp"
 
 namespace spot {
@@ -9,15 +9,16 @@ namespace spot {
 namespace {
 
 /// Centres that coincide have no line between them; part them along x, by id so that both agree.
-void part_coincident(const TiledPacking& packing, double by, PushedGrains& grains) {
+void part_coincident(const TiledPacking& packing, double pair_share, PushedGrains& grains) {
   const Cells& cells = packing.cells();
   for (std::size_t k = 0; k < grains.count; ++k) {
     if (depth_of(grains.pushes[k]) < 1.0f) continue;
     const std::uint32_t i = grains.slots[k];
     for (const std::uint32_t j : packing.lists().of(i)) {
       const Point apart = minus(cells.points[i], cells.points[j]);
-      if (apart.x == 0 && apart.y == 0 && apart.z == 0)
-        add(grains.pushes[k], cells.lattice().wrapped({cells.ids[i] < cells.ids[j] ? -by : by, 0.0, 0.0}));
+      if (apart.x != 0 || apart.y != 0 || apart.z != 0) continue;
+      const double by = pair_share * (cells.radius(i) + cells.radius(j));
+      add(grains.pushes[k], cells.lattice().wrapped({cells.ids[i] < cells.ids[j] ? -by : by, 0.0, 0.0}));
     }
   }
 }
@@ -25,17 +26,12 @@ void part_coincident(const TiledPacking& packing, double by, PushedGrains& grain
 }  // namespace
 
 void find_pushes(const TiledPacking& packing, const PushStrength& strength, PushedGrains& grains) {
-  const CellLattice& lattice = packing.cells().lattice();
-  const double parted = (1.0 - strength.in_contact) * lattice.diameter() / lattice.quantum().length();
-  const auto fixed_share = static_cast<float>(strength.fixed_share);
   grains.pushes.resize(grains.count);
-  packing.kernels().push_off_neighbours(
-      packing.cells().points.data(), grains.slots.data(), grains.count, packing.lists().view(),
-      {static_cast<float>(1.0 / (parted * parted)), static_cast<float>(strength.pair_share), fixed_share},
-      grains.pushes.data());
-  part_coincident(packing, strength.pair_share * lattice.diameter(), grains);
+  push_off_neighbours(packing.kernels(), packing.cells(), packing.lists(), grains.slots.data(), grains.count,
+                      {strength.in_contact, strength.pair_share, strength.fixed_share}, grains.pushes.data());
+  part_coincident(packing, strength.pair_share, grains);
   for (const std::uint32_t k : grains.near_walls)
-    packing.walls().push_off_planes(grains.slots[k], fixed_share, grains.pushes[k]);
+    packing.walls().push_off_planes(grains.slots[k], static_cast<float>(strength.fixed_share), grains.pushes[k]);
 }
 
 void add_pushes_of_other_walls(const TiledPacking& packing, double fixed_share, const Container& container,

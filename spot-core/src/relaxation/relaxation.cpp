@@ -17,7 +17,9 @@ double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, 
   double deepest = 0.0;
   const auto [first, last] = packing.neighbours(i);
   for (const std::uint32_t* j = first; j != last; ++j) {
-    const double dx = periodic.nearest(xi - x[*j], 0), dy = periodic.nearest(yi - y[*j], 1), dz = zi - z[*j];
+    double dx = xi - x[*j], dy = yi - y[*j];
+    const double dz = zi - z[*j];
+    periodic.shorten(dx, dy);
     const double squared = dx * dx + dy * dy + dz * dz;
     const double touching = radius + packing.radius(*j);
     if (squared >= touching * touching) continue;

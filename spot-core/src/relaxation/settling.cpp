@@ -226,13 +226,13 @@ void Settling::press_together() {
 /// Each rank finds its own neighbours of all that has come down, here and on the ranks below and above. Those that are
 /// on their way out go on.
 void Settling::take_along_neighbours() {
-  const double reach = square((1.0 + reach_of_pressing) * cells_.lattice().quanta_of_diameter());
   std::vector<std::uint32_t> found;
   const auto find = [&](std::uint32_t slot) {
     for (const std::uint32_t j : packing_.lists().of(slot))
       if (cells_.own(cells_.cell_of(j)) && cells_.points[j].state == Point::free &&
-          squared_distance(cells_.points[slot], cells_.points[j]) <= reach &&
-          !bearing_.is_over_orifice(cells_.position(j), 0.5))
+          squared_distance(cells_.points[slot], cells_.points[j]) <=
+              square((1.0 + reach_of_pressing) * cells_.touching_distance(slot, j)) &&
+          !bearing_.is_over_orifice(cells_.position(j), cells_.radius(j)))
         found.push_back(j);
   };
   for (const Place& place : falling_) find(cells_.slot(place));
@@ -270,10 +270,10 @@ double Settling::part_laid(double down) {
   for (std::size_t k = 0; k < pressed_.count; ++k) {
     Point& push = pressed_.pushes[k];
     const double depth = 0.5 * static_cast<double>(depth_of(push));
-    const double through = bearing_.depth_in_orifice(cells_.position(pressed_.slots[k]));
+    const double through = bearing_.depth_in_orifice(pressed_.slots[k]);
     deepest = std::max(deepest, depth);
     if (through > 0.0)
-      add(push, cells_.lattice().wrapped({0.0, 0.0, fixed_share * through * diameter_}));
+      add(push, cells_.lattice().wrapped({0.0, 0.0, fixed_share * through * (2.0 * cells_.radius(pressed_.slots[k]))}));
     else if (depth <= overlap_pressed)
       add(push, cells_.lattice().wrapped({0.0, 0.0, -down * diameter_}));
     move(pressed_.slots[k], push, Point::due);

@@ -35,9 +35,26 @@ Vector3 sample(int number) {
 DilationField::DilationField(const SpotParameters& parameters, const Container& container, double diameter)
     : container_(&container),
       origin_(container.orifice().centre),
-      spacing_(std::max(parameters.radius, diameter)),
+      spacing_(Vector3::Constant(std::max(parameters.radius, diameter))),
       spot_volume_(parameters.missing_volume(diameter)),
-      reference_(parameters.dilation) {}
+      reference_(parameters.dilation) {
+  const Periodic& periodic = container.periodic();
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!periodic.along(axis)) continue;
+    const double nodes = std::max(1.0, std::floor(periodic.length(axis) / spacing_[axis]));
+    spacing_[axis] = periodic.length(axis) / nodes;
+    period_[static_cast<std::size_t>(axis)] = static_cast<int>(nodes);
+  }
+}
+
+DilationField::Node DilationField::wrapped(Node node) const {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (period_[axis] == 0) continue;
+    node[axis] %= period_[axis];
+    if (node[axis] < 0) node[axis] += period_[axis];
+  }
+  return node;
+}
 
 std::array<DilationField::Corner, 8> DilationField::corners(const Vector3& point) const {
   Node low;
@@ -55,6 +72,7 @@ std::array<DilationField::Corner, 8> DilationField::corners(const Vector3& point
       all[k].node[axis] += upper ? 1 : 0;
       all[k].weight *= upper ? share[axis] : parts - share[axis];
     }
+    all[k].node = wrapped(all[k].node);
   }
   return all;
 }
@@ -89,6 +107,9 @@ void DilationField::count(const std::vector<Vector3>& spots, Communicator& commu
   for (std::size_t axis = 0; axis < 3; ++axis) {
     low_[axis] = static_cast<int>(ends[axis]);
     high_[axis] = static_cast<int>(-ends[3 + axis]) + 1;
+    if (period_[axis] == 0) continue;
+    low_[axis] = 0;
+    high_[axis] = period_[axis];
   }
   counts_.resize(place({low_[0], low_[1], high_[2]}));
   for (const Vector3& spot : spots)
@@ -114,9 +135,10 @@ double DilationField::volume_of(const Node& node) const {
     const Vector3 from_node = sample(number);
     const double weight = (1.0 - from_node.array().abs()).prod();
     all += weight;
-    if (container_->contains(origin_ + spacing_ * (Vector3(node[0], node[1], node[2]) + from_node))) inside += weight;
+    if (container_->contains(origin_ + spacing_.cwiseProduct(Vector3(node[0], node[1], node[2]) + from_node)))
+      inside += weight;
   }
-  return volumes_[node] = inside / all * spacing_ * spacing_ * spacing_;
+  return volumes_[node] = inside / all * spacing_.x() * spacing_.y() * spacing_.z();
 }
 
 double DilationField::at(const Vector3& point) const {

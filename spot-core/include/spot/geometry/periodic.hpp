@@ -27,7 +27,7 @@ class Periodic {
   /// order.
   Periodic(const std::optional<Interval>& x, const std::optional<Interval>& y);
 
-  bool any() const { return along(0) || along(1); }
+  bool any() const { return any_; }
   bool along(int axis) const { return length(axis) < infinite; }
 
   /// Ends of the cell, and its length, the period; infinite along an axis on which nothing repeats.
@@ -40,12 +40,23 @@ class Periodic {
   double wrap(double coordinate, int axis) const {
     return coordinate >= low(axis) && coordinate < high(axis) ? coordinate : wrapped(coordinate, axis);
   }
+  void wrap(double& x, double& y) const {
+    if (!any_) return;
+    x = wrap(x, 0);
+    y = wrap(y, 1);
+  }
   Vector3 wrap(const Vector3& position) const { return {wrap(position.x(), 0), wrap(position.y(), 1), position.z()}; }
 
   /// The difference of two coordinates, each in any cell, to the nearest image: at most half a period, of either sign.
   /// Exact as wrap() is, and the opposite of that of the opposite.
   double nearest(double difference, int axis) const {
     return std::abs(difference) <= half_[static_cast<std::size_t>(axis)] ? difference : shortened(difference, axis);
+  }
+  /// Of both coordinates of a difference; hardly costs anything where nothing repeats.
+  void shorten(double& x, double& y) const {
+    if (!any_) return;
+    x = nearest(x, 0);
+    y = nearest(y, 1);
   }
   Vector3 nearest(const Vector3& difference) const {
     return {nearest(difference.x(), 0), nearest(difference.y(), 1), difference.z()};
@@ -68,6 +79,7 @@ class Periodic {
   double wrapped(double coordinate, int axis) const;
   double shortened(double difference, int axis) const;
 
+  bool any_ = false;
   std::array<double, 3> low_ = {-infinite, -infinite, -infinite}, high_ = {infinite, infinite, infinite};
   std::array<double, 3> length_ = high_, half_ = high_;
 };

@@ -70,6 +70,17 @@ class Cells {
   /// Among the own layers.
   std::size_t layer_of(std::uint32_t cell) const { return (cell - first_own()) / in_layer(); }
 
+  // Sizes. Equal grains, all of the lattice's diameter, keep none.
+  /// Grains are unequal from now on, all that are there being of the largest size.
+  void allow_unequal();
+  bool unequal() const { return unequal_; }
+  void set_radius(std::uint32_t slot, double radius);
+  double radius(std::uint32_t slot) const { return unequal_ ? sizes[slot].radius : 0.5 * lattice_.diameter(); }
+  /// Of the centres of two grains that touch, in quanta.
+  double touching_distance(std::uint32_t a, std::uint32_t b) const {
+    return (radius(a) + radius(b)) / lattice_.quantum().length();
+  }
+
   // Slots.
   std::uint32_t slots() const { return first_slot_.back(); }
   std::uint32_t first_slot(std::uint32_t cell) const { return first_slot_[cell]; }
@@ -118,6 +129,7 @@ class Cells {
   // Of every slot.
   AlignedVector<Point> points, references, corrections;  ///< `corrections`: the last, as far as a solver carries it on
   std::vector<std::int64_t> ids;                         ///< -1 in empty slots
+  std::vector<GrainSize> sizes;                          ///< if they are unequal
   // Of every cell.
   std::vector<std::int32_t> unrelaxed;  ///< moves that have reached into it since it was relaxed, in sixteenths
   std::vector<std::int32_t> drift;      ///< no grain is farther from its reference, in quanta
@@ -129,6 +141,7 @@ class Cells {
 
  private:
   void give_room(std::uint32_t cell);
+  GrainSize size_of(double radius) const;
 
   CellLattice lattice_;
   Slabs slabs_{std::vector<std::int64_t>{0}, 1};
@@ -139,6 +152,7 @@ class Cells {
   std::vector<SlotData*> attached_;
   std::array<std::vector<Place>, 2> changed_;
   std::size_t size_ = 0;
+  bool unequal_ = false;
 };
 
 }  // namespace spot

@@ -80,8 +80,9 @@ class Packing {
   }
 
   double distance_squared(std::size_t i, const Vector3& point) const {
-    const double x = periodic_.nearest(x_[i] - point.x(), 0), y = periodic_.nearest(y_[i] - point.y(), 1),
-                 z = z_[i] - point.z();
+    double x = x_[i] - point.x(), y = y_[i] - point.y();
+    const double z = z_[i] - point.z();
+    periodic_.shorten(x, y);
     return x * x + y * y + z * z;
   }
 
@@ -91,11 +92,13 @@ class Packing {
 
   /// Moves grain i by a displacement whose components are multiples of the quantum.
   void move(std::uint32_t i, double dx, double dy, double dz) {
-    x_[i] = periodic_.wrap(x_[i] + dx, 0);
-    y_[i] = periodic_.wrap(y_[i] + dy, 1);
+    x_[i] += dx;
+    y_[i] += dy;
     z_[i] += dz;
-    const double ex = periodic_.nearest(x_[i] - reference_x_[i], 0), ey = periodic_.nearest(y_[i] - reference_y_[i], 1),
-                 ez = z_[i] - reference_z_[i];
+    periodic_.wrap(x_[i], y_[i]);
+    double ex = x_[i] - reference_x_[i], ey = y_[i] - reference_y_[i];
+    const double ez = z_[i] - reference_z_[i];
+    periodic_.shorten(ex, ey);
     if (ex * ex + ey * ey + ez * ez > half_skin_ * half_skin_) wandered_.push_back(i);
   }
 

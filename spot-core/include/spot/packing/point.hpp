@@ -24,6 +24,13 @@ struct alignas(16) Point {
                                 empty = 1 << 30;
 };
 
+/// How large a grain is, where grains are unequal.
+struct GrainSize {
+  double radius;    ///< (length)
+  float in_quanta;  ///< the same
+  float volume;     ///< volume_parts()
+};
+
 /// Whom a move reaches: the share of a free point is (radius^2 - r^2) per_square, but no more than 1.
 struct Reach {
   float radius_squared, per_square;

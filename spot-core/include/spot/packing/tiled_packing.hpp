@@ -119,6 +119,7 @@ class TiledPacking {
  private:
   TiledPacking(double diameter, double extent, std::shared_ptr<Communicator> communicator);
   void set_slabs(const Slabs& slabs);
+  bool some_are_smaller(const std::vector<Grain>& grains);
   std::vector<Grain> take_own(const std::vector<Grain>& grains) const;
   void list_all(const Container& container);
   void find_drifted();

@@ -39,10 +39,12 @@ class WallMarks : public SlotData {
  private:
   struct TouchingPlane {
     std::int32_t Point::*axis;
-    std::int32_t at;  // where grains that touch it have their centres, in wrapped quanta from low
+    double at, low;  // of the plane, and of the lattice along its axis
     bool grains_below;
+    std::int32_t largest_touch;  // it with their centres here, in wrapped quanta from low
   };
 
+  std::int32_t touching(const TouchingPlane& plane, double radius) const;
   void other_contacts(const Container& container, const Vector3& centre, double reach, WallContacts& contacts) const;
 
   Cells& cells_;

@@ -12,7 +12,7 @@ namespace spot {
 class Bearing {
  public:
   Bearing(const TiledPacking& packing, const Container& container)
-      : packing_(packing), cells_(packing.cells()), container_(container), diameter_(packing.diameter()) {}
+      : packing_(packing), cells_(packing.cells()), container_(container) {}
 
   /// Is there anybody lower nearby, a wall, or the orifice, who may bear this grain?
   bool is_borne(std::uint32_t slot) const;
@@ -20,12 +20,13 @@ class Bearing {
   /// Does it lie on the floor, or on what stands in the orifice?
   bool is_on_floor(std::uint32_t slot) const;
 
-  /// Is this place no higher than `reach` diameters above the orifice? The packing there is borne by what flows out of
+  /// Is this place no higher than `reach` (length) above the orifice? The packing there is borne by what flows out of
   /// it, which is the spots' business.
   bool is_over_orifice(const Vector3& place, double reach) const;
 
-  /// How deep a grain here has sunk into the orifice, which is a floor until spots come, in diameters.
-  double depth_in_orifice(const Vector3& place) const;
+  /// How deep a grain here has sunk into the orifice, which is a floor until spots come, in its
+  /// diameters.
+  double depth_in_orifice(std::uint32_t slot) const;
 
   /// Unit vectors from everything that a grain touches to the grain; of grains that come down, from those that rest, or
   /// only from those that lie (`least`).
@@ -37,12 +38,11 @@ class Bearing {
   double push_off(std::uint32_t slot, const Point& place, double in_contact, Point& push) const;
 
  private:
-  bool is_near_floor_or_slope(const Vector3& place) const;
+  bool is_near_floor_or_slope(const Vector3& place, double reach) const;
 
   const TiledPacking& packing_;
   const Cells& cells_;
   const Container& container_;
-  double diameter_;
 };
 
 }  // namespace spot

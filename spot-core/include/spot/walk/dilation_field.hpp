@@ -24,7 +24,8 @@ namespace spot {
 ///
 /// Spots are counted on the nodes of a cubic lattice R_s apart, but no closer than grains are; each is shared out
 /// between the eight nodes around it in proportion to its nearness to them along each axis, in whole 2^-24ths: sums are
-/// the same on any ranks.
+/// the same on any ranks. Where space repeats, so does the lattice: its spacing along that axis is the least from R_s
+/// on of which the period is a multiple.
 class DilationField {
  public:
   /// `diameter`: of grains. The container must outlive the field, or be replaced.
@@ -59,17 +60,20 @@ class DilationField {
   /// Where it is along an axis, in lattice spacings.
   double cell_of(const Vector3& point, std::size_t axis) const {
     const auto i = static_cast<int>(axis);
-    return (point[i] - origin_[i]) / spacing_;
+    return (point[i] - origin_[i]) / spacing_[i];
   }
   std::array<Corner, 8> corners(const Vector3& point) const;
   bool counted(const Node& node) const;
   std::size_t place(const Node& node) const;
   double volume_of(const Node& node) const;
   void find_volumes();
+  /// Its image in the cell.
+  Node wrapped(Node node) const;
 
   const Container* container_;
-  Vector3 origin_;
-  double spacing_, spot_volume_, reference_;
+  Vector3 origin_, spacing_;
+  Node period_ = {0, 0, 0};  // in nodes; 0 where nothing repeats
+  double spot_volume_, reference_;
   Node low_ = {0, 0, 0}, high_ = {0, 0, 0};  // of the nodes counted: from low_ to high_, exclusive
   std::vector<std::int64_t> counts_;         // of spots, in 2^-24ths
   std::vector<double> counted_volumes_;      // around the same nodes

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Drainages of unequal grains and in space that repeats. A scene that fails is named by its seed.
+#include "general_scene.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "invariants.hpp"
+#include "scenes.hpp"
+
+namespace {
+
+using spot::Grain;
+using spot::Packing;
+using spot::TimeOrderedDrainage;
+using spot::Vector3;
+
+/// Every invariant, as the drainage goes on; and the same once more, from a saved state half way.
+TEST(GeneralScenesInvariance, HoldWhatEveryDrainageHolds) {
+  std::size_t drained = 0, moves = 0, collapsed = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const scenes::GeneralScene scene(seed);
+    SCOPED_TRACE(scene.description());
+    try {
+      const auto drainage = scene.start_time_ordered();
+      invariants::Ledger ledger(scene.grains(), scene.diameter(), scene.limits(), *scene.silo());
+      spot::Bytes half_way;
+      for (int k = 1; k <= 6; ++k) {
+        drainage->advance_to(0.15 * k);
+        ASSERT_EQ(ledger.check(*drainage), "");
+        ASSERT_LT(ledger.overlaps().largest, scene.limits().largest_overlap_in_flow);
+        for (const Grain& grain : drainage->grains())
+          ASSERT_EQ(drainage->packing().periodic().wrap(grain.position), grain.position) << "out of the cell";
+        for (const spot::Spot& spot : drainage->spots())
+          ASSERT_EQ(scene.silo()->periodic().wrap(spot.position), spot.position) << "out of the cell";
+        if (k == 3) half_way = drainage->save();
+      }
+      TimeOrderedDrainage again(scene.spots(), scene.relaxation(), scene.limits(), scene.silo(), scene.diameter(),
+                                scene.extent(), half_way);
+      again.advance_to(0.15 * 6);
+      ASSERT_EQ(again.grains(), drainage->grains());
+      drained += ledger.drained();
+      moves += static_cast<std::size_t>(drainage->counters().moves);
+    } catch (const spot::CollapsedPacking&) {
+      ++collapsed;
+    }
+  }
+  EXPECT_LE(collapsed, 1u);
+  EXPECT_GT(drained, 1000u);
+  EXPECT_GT(moves, 20000u);
+}
+
+spot::SpotParameters dyadic_spots() {
+  spot::SpotParameters spots;
+  spots.radius = 2.0;
+  spots.influence = 0.02;
+  spots.step_width = 0.75;
+  spots.step_height = 0.125;
+  spots.speed = 3.0;
+  spots.injection_rate = 100.0;
+  spots.fixed_volume = 20.0;
+  spots.dilation = 0.05;
+  return spots;
+}
+
+/// All lengths are multiples of 2^-40, so that everything half a period farther on is exactly that.
+TEST(GeneralScenesInvariance, MovingEverythingAlongAPeriodMovesTheResult) {
+  const Vector3 low(-6.0, -4.0, 0.0), high(6.0, 4.0, 10.0);
+  for (const bool both : {false, true}) {
+    const auto drained_at = [&](double x) {
+      const auto silo = scenes::repeated_silo(low, high, true, both, {{x, 0.5, 0.0}, 2.0}, {0.5, 1.0});
+      auto grains = scenes::unequal_grains(700, low, high, silo->periodic(), 4);
+      for (Grain& grain : grains)
+        for (double& at : grain.position) at = std::nearbyint(at * 0x1p20) * 0x1p-20;
+      for (Grain& grain : grains) grain.position.x() += x;
+      TimeOrderedDrainage drainage(dyadic_spots(), {}, {0.0}, silo, Packing(1.0, 100.0, grains, silo->periodic()));
+      drainage.advance_to(2.0);
+      EXPECT_GT(drainage.counters().drained, 5);
+      std::vector<Grain> moved_back = drainage.grains();
+      for (Grain& grain : moved_back) grain.position.x() = silo->periodic().wrap(grain.position.x() - x, 0);
+      return moved_back;
+    };
+    scenes::expect_identical(drained_at(3.0), drained_at(-3.0));
+  }
+}
+
+/// A heap in the middle of a wide base, which nothing leaves on any side.
+TEST(GeneralScenesInvariance, WhatNothingCrossesIsAsBetweenWalls) {
+  const Vector3 low(-30.0, -30.0, 0.0), high(30.0, 30.0, 20.0);
+  const auto grains = scenes::unequal_grains(500, {-5, -4, 0}, {5, 4, 8}, {}, 7);
+  const auto drained = [&](bool x, bool y) {
+    const auto silo = scenes::repeated_silo(low, high, x, y, {{0, 0, 0}, 3.0}, {0.5, 1.0});
+    spot::SpotParameters spots = dyadic_spots();
+    spots.dilation = 0.0;
+    TimeOrderedDrainage drainage(spots, {}, {0.0}, silo, Packing(1.0, 100.0, grains, silo->periodic()));
+    drainage.advance_to(2.0);
+    EXPECT_GT(drainage.counters().drained, 5);
+    return drainage.grains();
+  };
+  const auto expected = drained(false, false);
+  for (const auto& [x, y] : {std::pair(true, false), std::pair(false, true), std::pair(true, true)})
+    scenes::expect_identical(drained(x, y), expected);
+}
+
+TEST(GeneralScenesUnit, RefusesPeriodsThatDoNotFit) {
+  const Vector3 low(-3.5, -6.0, 0.0), high(3.5, 6.0, 10.0);
+  const auto narrow = scenes::repeated_silo(low, high, true, false, {{0, 0, 0}, 2.0}, {0.5, 1.0});
+  EXPECT_THAT(scenes::text_of<spot::InvalidContainer>([&] {
+                TimeOrderedDrainage(dyadic_spots(), {}, {0.0}, narrow, Packing(1.0, 100.0, {}, narrow->periodic()));
+              }),
+              testing::AllOf(testing::HasSubstr("along x is 7"), testing::HasSubstr("at least 8")));
+  const auto wide = scenes::repeated_silo(2.0 * low, 2.0 * high, true, false, {{0, 0, 0}, 2.0}, {0.5, 1.0});
+  EXPECT_THROW(TimeOrderedDrainage(dyadic_spots(), {}, {0.0}, wide, Packing(1.0, 100.0, {})), spot::InvalidContainer);
+}
+
+}  // namespace
