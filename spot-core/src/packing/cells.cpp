@@ -29,8 +29,8 @@ void Cells::hold(const Slabs& slabs, int rank) {
   rank_ = rank;
   const int first = first_own_layer(), layers = own_layers();
   ghost_layers_ = {layers > 0 && first > 0 ? 1 : 0, layers > 0 && first + layers < lattice_.layers() ? 1 : 0};
-  const double cells = (static_cast<double>(layers) + ghost_layers_[below] + ghost_layers_[above]) *
-                       lattice_.size()[0] * lattice_.size()[1];
+  const double cells =
+      (static_cast<double>(layers) + ghost_layers_[below] + ghost_layers_[above]) * lattice_.cells_in_layer();
   if (cells * first_room * kernels::lanes > std::numeric_limits<std::uint32_t>::max())
     throw InvalidPacking(message("grains are spread over more than ", cells, " cells of ", lattice_.edge()[0], " by ",
                                  lattice_.edge()[1], " by ", lattice_.edge()[2], ", which is too many"));
@@ -48,6 +48,10 @@ void Cells::hold(const Slabs& slabs, int rank) {
   unrelaxed.assign(n, 0);
   drift.assign(n, 0);
   changed_ = {};
+  changed_in_images_.clear();
+  is_image_.clear();
+  if (lattice_.periodic().any())
+    for (std::uint32_t cell = 0; cell < n; ++cell) is_image_.push_back(lattice_.is_image(lattice_.cell(cell)) ? 1 : 0);
   size_ = 0;
   for (SlotData* data : attached_) data->renumber({}, slots);
 }
@@ -138,6 +142,8 @@ void Cells::vacate(std::uint32_t slot) {
 
 void Cells::note_change(std::uint32_t slot) {
   const Place place = place_of(slot);
+  if (is_image(place.cell)) return;
+  if (!is_image_.empty()) changed_in_images_.push_back(place);
   if (!own(place.cell)) return;
   for (const Side side : {below, above}) {
     const std::uint32_t first = first_of_border(side);
@@ -148,7 +154,7 @@ void Cells::note_change(std::uint32_t slot) {
 // ---- the rest
 
 Grain Cells::grain(std::uint32_t slot) const {
-  return {ids[slot], position(slot), points[slot].state == Point::held, radius(slot)};
+  return {ids[slot], lattice_.periodic().wrap(position(slot)), points[slot].state == Point::held, radius(slot)};
 }
 
 std::vector<std::int64_t> Cells::grains_in_own_layers() const {

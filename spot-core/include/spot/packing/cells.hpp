@@ -37,7 +37,7 @@ enum Side { below, above };
 /// *reference* (Verlet reference position), the place where it was listed last.
 ///
 /// A rank owns the grains listed in its own layers; of the layer next to them on each side, the ghost layer, it holds
-/// copies.
+/// copies. So it does of cells on the other side of a direction along which space repeats, the images.
 class Cells {
  public:
   explicit Cells(const CellLattice& lattice) : lattice_(lattice) {}
@@ -66,7 +66,8 @@ class Cells {
   std::uint32_t first_own() const { return static_cast<std::uint32_t>(ghost_layers_[below]) * in_layer(); }
   std::uint32_t last_own() const { return first_own() + static_cast<std::uint32_t>(own_layers()) * in_layer(); }
   std::uint32_t in_layer() const { return lattice_.cells_in_layer(); }
-  bool own(std::uint32_t cell) const { return cell >= first_own() && cell < last_own(); }
+  bool own(std::uint32_t cell) const { return cell >= first_own() && cell < last_own() && !is_image(cell); }
+  bool is_image(std::uint32_t cell) const { return !is_image_.empty() && is_image_[cell] != 0; }
   /// Among the own layers.
   std::size_t layer_of(std::uint32_t cell) const { return (cell - first_own()) / in_layer(); }
 
@@ -97,12 +98,18 @@ class Cells {
   }
   template <typename Visit>
   void visit_own(const Visit& visit) const {
-    this->visit(first_own(), last_own(), visit);
+    this->visit(first_own(), last_own(), [&](std::uint32_t slot) {
+      if (!is_image(cell_of(slot))) visit(slot);
+    });
   }
   template <typename Visit>
   void visit_ghosts(const Visit& visit) const {
     this->visit(0, first_own(), visit);
     this->visit(last_own(), count(), visit);
+    if (is_image_.empty()) return;
+    this->visit(first_own(), last_own(), [&](std::uint32_t slot) {
+      if (is_image(cell_of(slot))) visit(slot);
+    });
   }
 
   /// An empty place in a cell; if there is none, slots are numbered anew. Throws InvalidPacking if there are too many.
@@ -115,6 +122,8 @@ class Cells {
   void note_change(std::uint32_t slot);
   /// Places in own border layers in which something has changed since they were taken last.
   std::vector<Place> take_changes(Side side) { return std::exchange(changed_[side], {}); }
+  /// The same in any cells that there may be images of.
+  std::vector<Place> take_changes_seen_in_images() { return std::exchange(changed_in_images_, {}); }
 
   /// Grains owned.
   std::size_t size() const { return size_; }
@@ -150,7 +159,9 @@ class Cells {
   std::vector<std::uint32_t> first_slot_ = {0};  // of each cell, and the end of the last
   std::vector<std::uint32_t> cell_of_;           // of each slot
   std::vector<SlotData*> attached_;
+  std::vector<std::uint8_t> is_image_;  // of each cell, if space repeats
   std::array<std::vector<Place>, 2> changed_;
+  std::vector<Place> changed_in_images_;
   std::size_t size_ = 0;
   bool unequal_ = false;
 };
