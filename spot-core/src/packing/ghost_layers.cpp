@@ -2,7 +2,6 @@
 #include "spot/packing/ghost_layers.hpp"
 
 #include <algorithm>
-#include <unordered_map>
 #include <utility>
 
 #include "packing/wrapped_integers.hpp"
@@ -69,7 +68,7 @@ void GhostLayers::exchange_migrants(const Container& container) {
 
 void GhostLayers::exchange(const Container& container) {
   if (communicator_->size() > 1) exchange_layers(container);
-  if (cells_.lattice().periodic().any()) update_images(container);
+  if (cells_.repeat()) update_images(container);
 }
 
 void GhostLayers::exchange_layers(const Container& container) {
@@ -84,13 +83,9 @@ void GhostLayers::exchange_layers(const Container& container) {
 /// An image has the grains of its source in the same places, a period away.
 void GhostLayers::update_images(const Container& container) {
   const CellLattice& lattice = cells_.lattice();
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> images;  // of each source
-  for (std::uint32_t image = 0; image < cells_.count(); ++image)
-    if (cells_.is_image(image)) images[lattice.number_of(lattice.source_of(lattice.cell(image)))].push_back(image);
   std::vector<std::pair<Place, Place>> changed;  // of a source, and of its image
   for (const Place& place : cells_.take_changes_seen_in_images())
-    if (const auto found = images.find(place.cell); found != images.end())
-      for (const std::uint32_t image : found->second) changed.push_back({place, {image, place.in_cell}});
+    for (const std::uint32_t image : cells_.images_of(place.cell)) changed.push_back({place, {image, place.in_cell}});
   for (const auto& [source, image] : changed) {
     cells_.ensure_place(image);
     const std::uint32_t at = cells_.slot(image);
@@ -111,8 +106,8 @@ void GhostLayers::update_images(const Container& container) {
     come.push_back(image);
   }
   for (const Place& place : come) lists_.list(cells_.slot(place), container);
-  for (const auto& [source, all] : images)
-    for (const std::uint32_t image : all) copy_to_image(source, image);
+  for (std::uint32_t source = 0; source < cells_.count(); ++source)
+    for (const std::uint32_t image : cells_.images_of(source)) copy_to_image(source, image);
 }
 
 void GhostLayers::copy_to_image(std::uint32_t source, std::uint32_t image) {

@@ -55,7 +55,7 @@ bool CellRelaxation::share_out(std::int32_t parts, std::size_t workers) {
   count_ = packing_.kernels().find_reached(cells.unrelaxed.data() + cells.first_own(), cells_swept_.size(), parts,
                                            cells_swept_.data());
   for (std::size_t k = 0; k < count_; ++k) cells_swept_[k] += cells.first_own();
-  if (cells.lattice().periodic().any()) {
+  if (cells.repeat()) {
     const auto end = cells_swept_.begin() + static_cast<std::ptrdiff_t>(count_);
     const auto images =
         std::remove_if(cells_swept_.begin(), end, [&](std::uint32_t cell) { return cells.is_image(cell); });
