@@ -60,7 +60,7 @@ void WalledContainer::repeat(const Periodic& periodic) {
 }
 
 bool WalledContainer::contains(const Vector3& place) const {
-  const Vector3 centre = periodic_.wrap(place);
+  const Vector3 centre = periodic_.any() ? periodic_.wrap(place) : place;
   return std::all_of(walls_.begin(), walls_.end(),
                      [&](const Bounded& b) { return b.wall->nearest(centre).distance >= 0.0; }) &&
          centre.z() >= orifice_.centre.z();
@@ -74,7 +74,7 @@ bool WalledContainer::may_have_left_to(const Vector3& place) const {
 }
 
 void WalledContainer::contacts(const Vector3& place, double reach, WallContacts& contacts) const {
-  const Vector3 centre = periodic_.wrap(place);
+  const Vector3 centre = periodic_.any() ? periodic_.wrap(place) : place;
   contacts.clear();
   for (const Bounded& b : walls_) {
     const WallContact contact = b.wall->nearest(centre);
@@ -83,7 +83,7 @@ void WalledContainer::contacts(const Vector3& place, double reach, WallContacts&
 }
 
 void WalledContainer::other_contacts(const Vector3& place, double reach, WallContacts& contacts) const {
-  const Vector3 centre = periodic_.wrap(place);
+  const Vector3 centre = periodic_.any() ? periodic_.wrap(place) : place;
   contacts.clear();
   for (const Bounded& b : walls_) {
     if (b.wall->axis_plane()) continue;

@@ -72,8 +72,9 @@ std::array<DilationField::Corner, 8> DilationField::corners(const Vector3& point
       all[k].node[axis] += upper ? 1 : 0;
       all[k].weight *= upper ? share[axis] : parts - share[axis];
     }
-    all[k].node = wrapped(all[k].node);
   }
+  if (period_[0] != 0 || period_[1] != 0)
+    for (Corner& corner : all) corner.node = wrapped(corner.node);
   return all;
 }
 
