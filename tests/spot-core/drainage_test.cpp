@@ -133,7 +133,7 @@ class PlainDrainage {
       ++moved;
     }
     if (moved == 0) {
-      if (move.middle.z() > container_->orifice().centre.z() + spots_.radius) population_.remove(move.spot);
+      if (move.middle.z() > container_->outlets().height() + spots_.radius) population_.remove(move.spot);
       return;
     }
     ++effective_moves_;

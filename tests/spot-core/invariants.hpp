@@ -82,7 +82,6 @@ class Ledger {
 
  private:
   std::string check_drained(spot::Drainage& drainage) {
-    const spot::Orifice& orifice = container_.orifice();
     for (const spot::Grain& grain : drainage.take_drained()) {
       const auto found = start_.find(grain.id);
       if (found == start_.end()) return spot::message("grain ", grain.id, " drained but was never there");
@@ -90,10 +89,14 @@ class Ledger {
       if (!drained_.insert(grain.id).second) return spot::message("grain ", grain.id, " drained twice");
       if (!grain.position.allFinite() || grain.position.z() >= limits_.outlet)
         return spot::message("grain ", grain.id, " drained at z = ", grain.position.z());
-      // Below the hole grains spread no farther than they have come down.
-      const double from_axis = (grain.position - orifice.centre).head<2>().norm();
-      if (guards_base_ && from_axis > orifice.radius + orifice.centre.z() - grain.position.z())
-        return spot::message("grain ", grain.id, " went through the base, ", from_axis, " from the axis");
+      // Below a hole grains spread no farther than they have come down.
+      const spot::Outlets& outlets = container_.outlets();
+      const bool left = std::any_of(outlets.begin(), outlets.end(), [&](const spot::Outlet& outlet) {
+        return outlet.distance(grain.position) <= outlets.height() - grain.position.z();
+      });
+      if (guards_base_ && !left)
+        return spot::message("grain ", grain.id, " went through the base at (", grain.position.x(), ", ",
+                             grain.position.y(), ")");
     }
     return {};
   }

@@ -461,7 +461,7 @@ INSTANTIATE_TEST_SUITE_P(Persistence, SpotsBetweenWallsStatistical, testing::Val
 
 TEST(SpotsAnalytic, RisingSpotsKeepTheirRadiusFromBaseAndRim) {
   const auto silo = scenes::small_silo(8.0, 4.0);
-  const spot::BasePlate plate(silo->orifice());
+  const spot::BasePlate plate(silo->outlets());
   walk(scenes::paper_spots(), *silo, 500, 80, [&](const Move& move, int) {
     const Vector3 end = end_of(move);
     if (end.z() <= 0.0) {

@@ -234,7 +234,7 @@ class OneAtATime : public spot::Container {
     walls_->contacts(centre, reach, contacts);
   }
   bool concurrent() const override { return false; }
-  const spot::Orifice& orifice() const override { return walls_->orifice(); }
+  const spot::Outlets& outlets() const override { return walls_->outlets(); }
   std::optional<spot::WallOnPath> first_wall(const spot::Vector3& from, const spot::Vector3& to) const override {
     return walls_->first_wall(from, to);
   }

@@ -51,8 +51,9 @@ void WindowedDrainage::require_fitting_window() const {
   require(highest, highest_climb, "diameters are climbed by spots");
   require(clock * spot_parameters().fastest() / spot_parameters().step_height, most_steps, "steps are taken by a spot");
   require(clock * spot_parameters().injection_rate, most_births, "spots are born");
-  require(flow_through_orifice(spot_parameters(), clock, diameter(), container().orifice().radius),
-          calibration::longest_flow_in_a_window, "diameters pass the orifice");
+  require(
+      flow_through_orifice(spot_parameters(), clock, diameter(), container().outlets()[0].hole->equivalent_radius()),
+      calibration::longest_flow_in_a_window, "diameters pass the orifice");
 }
 
 double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tolerance, double diameter) {
@@ -138,7 +139,7 @@ void WindowedDrainage::weigh(const std::vector<int>& enclosed, std::vector<Move>
 
 /// Spots that are inside and enclose nothing have come out at the top.
 void WindowedDrainage::remove_spots_above() {
-  const double inside = container().orifice().centre.z() + spot_parameters().radius;
+  const double inside = container().outlets().height() + spot_parameters().radius;
   for (const SharedMove& shared : moves_.all()) {
     if (!moves_.own(shared)) continue;
     count_move(shared.enclosed);

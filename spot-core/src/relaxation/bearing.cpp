@@ -36,13 +36,12 @@ bool Bearing::is_borne(std::uint32_t slot) const {
     if (squared_distance(own, other) * square(per_diameter) <= square(reach_of_support)) return true;
   }
   const Vector3 place = cells_.position(slot);
-  return is_over_orifice(place, wall_reach) || is_near_floor_or_slope(place);
+  return is_over_outlet(place, wall_reach) || is_near_floor_or_slope(place);
 }
 
-bool Bearing::is_over_orifice(const Vector3& place, double reach) const {
-  const Orifice& orifice = container_.orifice();
-  const double height = place.z() - orifice.centre.z();
-  return height < 0.0 || (height <= reach * diameter_ && (place - orifice.centre).head<2>().norm() <= orifice.radius);
+bool Bearing::is_over_outlet(const Vector3& place, double reach) const {
+  const double height = place.z() - container_.outlets().height();
+  return height < 0.0 || (height <= reach * diameter_ && container_.is_over_outlet(place));
 }
 
 bool Bearing::is_near_floor_or_slope(const Vector3& place) const {
@@ -54,15 +53,15 @@ bool Bearing::is_near_floor_or_slope(const Vector3& place) const {
 
 bool Bearing::is_on_floor(std::uint32_t slot) const {
   const Vector3 place = cells_.position(slot);
-  if (is_over_orifice(place, 0.5)) return true;
+  if (is_over_outlet(place, 0.5)) return true;
   WallContacts walls;
   if (packing_.walls().near_wall(slot)) container_.contacts(place, (0.5 + contact_gap) * diameter_, walls);
   return std::any_of(walls.begin(), walls.end(), [](const WallContact& wall) { return wall.normal.z() > flat; });
 }
 
-double Bearing::depth_in_orifice(const Vector3& place) const {
-  const double height = (place.z() - container_.orifice().centre.z()) / diameter_;
-  return height >= 0.0 && is_over_orifice(place, 0.5) ? 0.5 - height : 0.0;
+double Bearing::depth_in_outlet(const Vector3& place) const {
+  const double height = (place.z() - container_.outlets().height()) / diameter_;
+  return height >= 0.0 && is_over_outlet(place, 0.5) ? 0.5 - height : 0.0;
 }
 
 std::vector<Vector3> Bearing::contact_normals(std::uint32_t slot, std::int32_t least) const {

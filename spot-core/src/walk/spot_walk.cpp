@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/walk/spot_walk.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "spot/base/elementary.hpp"
 #include "spot/base/random.hpp"
 
 namespace spot {
@@ -54,11 +52,11 @@ double SpotWalk::time_before_birth(std::int64_t id) const {
 
 Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) const {
   const auto numbers = numbers_of_birth(parameters_, id);
-  const Orifice& orifice = container.orifice();
-  const double from_axis = std::max(0.0, orifice.radius - parameters_.radius) * std::sqrt(numbers[1]);
-  Spot spot{id, 0, orifice.centre, time};
-  spot.position +=
-      Vector3(from_axis * cos_of_turns(numbers[2]), from_axis * sin_of_turns(numbers[2]), -parameters_.radius);
+  const Outlet& outlet = container.outlets()[0];
+  Spot spot{id, 0, outlet.centre, time};
+  Vector3 from_centre = outlet.hole->point(parameters_.radius, numbers[1], numbers[2]);
+  from_centre.z() = -parameters_.radius;
+  spot.position += from_centre;
   draw_next_step(spot);
   return spot;
 }

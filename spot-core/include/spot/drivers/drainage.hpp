@@ -71,7 +71,7 @@ class Drainage {
   /// All grains, in increasing order of ids.
   std::vector<Grain> grains() const;
 
-  /// Throws InvalidPacking, naming the grain, if one has left the container other than through the orifice.
+  /// Throws InvalidPacking, naming the grain, if one has left the container other than through an outlet.
   void require_inside() const;
 
   /// Of this rank: its spots, its grains; of sweeps, those on all ranks.
