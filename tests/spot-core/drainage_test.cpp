@@ -374,7 +374,7 @@ TEST(DrainageInvariance, UnitsChangeOnlyTheLastDigits) {
   spots.step_width *= d;
   spots.step_height *= d;
   spots.speed *= d / tau;
-  spots.injection_rate /= tau;
+  spots.injection_rate *= 1.0 / tau;
   const spot::Orifice orifice{{0.0, 0.0, 0.0}, 4.0 * d};
   TimeOrderedDrainage metric(spots, {}, DrainageLimits{-d},
                              spot::box_silo(-6.0 * d, 6.0 * d, -4.0 * d, 4.0 * d, orifice, {d, spots.radius}),
@@ -557,7 +557,8 @@ TEST(DrainageUnit, GrainsThatWereDrivenOutOfTheContainerAreNamed) {
 }
 
 /// The text of the error of a drainage with paper's spots, one number of them changed.
-std::string refusal_of(double SpotParameters::*number, double value) {
+template <typename Number>
+std::string refusal_of(Number SpotParameters::*number, double value) {
   SpotParameters spots = scenes::paper_spots();
   spots.*number = value;
   return scenes::text_of<InvalidParameter>([&] { drainage_of({{1, {0.0, 0.0, 1.0}}}, spots); });

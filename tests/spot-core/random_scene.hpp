@@ -54,7 +54,7 @@ class RandomScene {
     return spot::message(
         "scene ", seed_, ": ", kind_, ", ", grains_.size(), " grains, d = ", d, ", orifice ",
         silo_->outlets()[0].hole->widest_radius() / d, ", R_s = ", spots_.radius / d, ", w = ", spots_.influence,
-        ", dx = ", spots_.step_width / d, ", dz = ", spots_.step_height / d, ", nu_s = ", spots_.injection_rate,
+        ", dx = ", spots_.step_width / d, ", dz = ", spots_.step_height / d, ", nu_s = ", spots_.injection_rate.largest(),
         ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation, spots_.together ? ", together" : "",
         ", alpha ", relaxation_.alpha, ", momentum ", relaxation_.momentum, ", tolerance ", relaxation_.tolerance,
         ", contact ", relaxation_.contact_overlap, ", ", windows_, " windows of ", window_,
@@ -179,7 +179,7 @@ class RandomScene {
     const double clock = spots_.together ? std::max(window_, spots_.mean_waiting_time()) : window_;
     const double carried = spots_.fixed_volume > 0.0 ? spots_.fixed_volume * spots_.influence : volume;
     const double orifice = silo_->outlets()[0].hole->widest_radius() / diameter_;
-    const double flow = clock * spots_.injection_rate * carried / (3.5 * orifice * orifice);
+    const double flow = clock * spots_.injection_rate.largest() * carried / (3.5 * orifice * orifice);
     spots_.injection_rate *= std::min(1.0, 0.9 / flow);
   }
 
