@@ -136,7 +136,7 @@ spot::SpotParameters spot_parameters() {
 }
 
 std::shared_ptr<const spot::Container> silo() {
-  return spot::box_silo(-25.0, 25.0, -4.0, 4.0, {{0.0, 0.0, 0.0}, 4.0}, {0.25, 2.0});
+  return spot::box_silo(-25.0, 25.0, -4.0, 4.0, spot::Orifice{{0.0, 0.0, 0.0}, 4.0}, {0.25, 2.0});
 }
 
 template <typename Start>
