@@ -374,7 +374,7 @@ TEST(DrainageInvariance, UnitsChangeOnlyTheLastDigits) {
   spots.step_width *= d;
   spots.step_height *= d;
   spots.speed *= d / tau;
-  spots.injection_rate *= 1.0 / tau;
+  spots.injection_rate = spots.injection_rate.largest() / tau;
   const spot::Orifice orifice{{0.0, 0.0, 0.0}, 4.0 * d};
   TimeOrderedDrainage metric(spots, {}, DrainageLimits{-d},
                              spot::box_silo(-6.0 * d, 6.0 * d, -4.0 * d, 4.0 * d, orifice, {d, spots.radius}),

@@ -215,6 +215,23 @@ TEST(SeveralOutletsUnit, ASlotDrains) {
   EXPECT_GT(ledger.drained(), 50u);
 }
 
+TEST(SeveralOutletsUnit, GrainsMayBeInAnyOfThemAndNotBetween) {
+  const spot::GrainChecks checks(limits, silo(), 1.0);
+  const auto refusal = [&](const Vector3& place) {
+    return scenes::text_of<spot::InvalidPacking>([&] { checks.require_valid_place({7, place}); });
+  };
+  EXPECT_NO_THROW(checks.require_valid_place({7, {-6.0, 3.4, -0.5}}));
+  EXPECT_NO_THROW(checks.require_valid_place({7, {8.9, 3.4, -0.5}})) << "in a corner of the slot";
+  EXPECT_NE(refusal({0.0, 0.0, -0.5}).find("grain 7 at (0, 0, -0.5)"), std::string::npos);
+  EXPECT_NO_THROW(checks.require_left_through_orifice({{1, {-6.0, 0.0, -1.1}}, {2, {9.0, 3.0, -1.1}}}));
+  const std::string beside = scenes::text_of<spot::CollapsedPacking>([&] {
+    checks.require_left_through_orifice({{1, {-6.0, 0.0, -1.1}}, {2, {1.5, 0.0, -1.1}}});
+  });
+  EXPECT_NE(beside.find("grain 2 at (1.5, 0, -1.1) left through the base, beside the slot of 6 by 7 at (6, 0, 0)"),
+            std::string::npos)
+      << beside;
+}
+
 TEST(SeveralOutletsUnit, ContainersAreReplacedByThoseWithAsManyOutlets) {
   WindowedDrainage drainage = windowed();
   const std::string refusal =

@@ -50,7 +50,7 @@ void add_parameters(std::vector<Case>& cases) {
   add_values(cases, "w / 2.5e-3", {0.01, 1, 2, 5, 10, 20, 50, 100}, [](Scene& s, double v) { s.spots.influence *= v; });
   add_values(cases, "w / 2.5e-3, births fewer by as much", {0.1, 2, 5, 10, 20, 50, 100}, [](Scene& s, double v) {
     s.spots.influence *= v;
-    s.spots.injection_rate *= 1.0 / v;
+    s.spots.injection_rate = s.spots.injection_rate.largest() / v;
   });
   add_values(cases, "R_s / d", {0.6, 1, 1.5, 2, 3, 4, 5, 6}, [](Scene& s, double v) { s.set_radius(v); });
   add_values(cases, "dz / d", {0.005, 0.02, 0.05, 0.1, 0.2, 0.5, 1.2, 2.4},
@@ -210,7 +210,8 @@ void add_combinations(std::vector<Case>& cases, int number) {
     scene.relaxation.tolerance = log_uniform(1e-4, 0.1);
     // Births and steps grow with time; no more moves than take a second.
     const double moves = scene.time_ordered ? 2e4 : 4e5;
-    scene.time = std::min(4.0, std::sqrt(2.0 * moves / (scene.spots.injection_rate.largest() * scene.spots.move_rate())));
+    scene.time =
+        std::min(4.0, std::sqrt(2.0 * moves / (scene.spots.injection_rate.largest() * scene.spots.move_rate())));
     cases.push_back({"all at once",
                      spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ",
                                    scene.spots.radius, ", dz ", scene.spots.step_height, ", nu_s ",
