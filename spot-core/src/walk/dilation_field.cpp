@@ -34,7 +34,7 @@ Vector3 sample(int number) {
 
 DilationField::DilationField(const SpotParameters& parameters, const Container& container, double diameter)
     : container_(&container),
-      origin_(container.orifice().centre),
+      origin_(container.outlets()[0].centre),
       spacing_(Vector3::Constant(std::max(parameters.radius, diameter))),
       spot_volume_(parameters.missing_volume(diameter)),
       reference_(parameters.dilation) {
