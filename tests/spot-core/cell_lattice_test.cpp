@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/packing/cell_lattice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "scenes.hpp"
+
+namespace {
+
+using spot::Cell;
+using spot::CellLattice;
+using spot::Interval;
+using spot::Periodic;
+using spot::Vector3;
+
+const Vector3 low(-7.0, -5.0, 0.0), high(7.0, 5.0, 12.0);
+
+CellLattice lattice(const Periodic& periodic = {}) {
+  CellLattice lattice(1.0, 100.0, periodic);
+  lattice.span(low, high);
+  lattice.hold(1, lattice.layers() - 1);
+  return lattice;
+}
+
+const Periodic none, along_x(Interval{-7.0, 7.0}, {}), along_both(Interval{-7.0, 7.0}, Interval{-5.0, 5.0});
+
+TEST(CellLatticeUnit, NumbersAndCellsAreOfEachOther) {
+  for (const Periodic& periodic : {none, along_x, along_both}) {
+    const CellLattice of = lattice(periodic);
+    for (std::uint32_t number = 0; number < of.cells_held(); ++number) {
+      const Cell cell = of.cell(number);
+      EXPECT_EQ(of.number_of(cell), number);
+      EXPECT_EQ(of.is_image(cell), of.is_image({cell.x, 0, cell.z}) || of.is_image({0, cell.y, cell.z}));
+      if (of.is_image(cell)) {
+        EXPECT_FALSE(of.is_image(of.source_of(cell)));
+        continue;
+      }
+      const Cell back = of.cell_in_all(of.number_in_all(cell));
+      EXPECT_TRUE(back.x == cell.x && back.y == cell.y && back.z == cell.z);
+    }
+  }
+}
+
+/// Coordinates wrap around; the cell tells which turn is meant.
+TEST(CellLatticeUnit, PlacesComeBackToTheQuantum) {
+  CellLattice wide(1.0, 1000.0);
+  wide.span(Vector3::Constant(-500.0), Vector3::Constant(500.0));
+  wide.hold(0, wide.layers());
+  scenes::Draws draws(1);
+  for (int k = 0; k < 1000; ++k) {
+    Vector3 place = draws.in_box(Vector3::Constant(-500.0), Vector3::Constant(500.0));
+    for (double& at : place) at = wide.quantum().snap(at);
+    const Vector3 at = place - wide.low();
+    EXPECT_EQ(wide.low() + wide.from_low(wide.wrapped(at), wide.cell_at(at)), place);
+  }
+}
+
+/// Every place within reach is in one of the rows, and every cell of a row has a place within reach; places are drawn
+/// in all images that are held, or in the period.
+TEST(CellLatticeBruteForce, RowsAreTheCellsWithinReach) {
+  scenes::Draws draws(2);
+  for (const Periodic& periodic : {none, along_x, along_both})
+    for (const bool with_images : {false, true}) {
+      const CellLattice of = lattice(periodic);
+      const double margin = with_images ? of.edge()[0] : 0.0;
+      for (int k = 0; k < 30; ++k) {
+        const Vector3 centre = draws.in_box(low, high) - of.low();
+        const double reach = draws.uniform(0.5, 4.0);
+        std::vector<spot::CellRow> rows;
+        of.find_rows(centre, reach, of.first_layer(), of.last_layer(), with_images, rows);
+        std::set<std::uint32_t> found;
+        for (const auto& row : rows)
+          for (std::uint32_t cell = row.first; cell < row.last; ++cell) EXPECT_TRUE(found.insert(cell).second);
+        for (int l = 0; l < 300; ++l) {
+          const Vector3 at = centre + draws.in_box(Vector3::Constant(-reach), Vector3::Constant(reach));
+          if ((at - centre).norm() > reach) continue;
+          Cell cell = of.cell_at(at);
+          bool held = cell.z >= of.first_layer() && cell.z < of.last_layer();
+          for (int axis = 0; axis < 2; ++axis) {
+            if (!periodic.along(axis)) continue;
+            held = held && at[axis] >= -margin && at[axis] < periodic.length(axis) + margin;
+            int& index = axis == 0 ? cell.x : cell.y;
+            if (at[axis] < 0.0) index = -1;
+            if (at[axis] >= periodic.length(axis)) index = of.size()[static_cast<std::size_t>(axis)];
+          }
+          if (!held) continue;
+          EXPECT_EQ(found.count(of.number_of(cell)), 1u);
+        }
+      }
+    }
+}
+
+TEST(CellLatticeUnit, GrowsByWholeCells) {
+  CellLattice of = lattice();
+  const Vector3 far(9.0, -11.0, 30.0);
+  const auto missing = of.cells_to(far);
+  EXPECT_GT(missing[1], 0);
+  EXPECT_GT(missing[3], 0);
+  EXPECT_GT(missing[5], 0);
+  EXPECT_EQ(missing[0] + missing[2] + missing[4], 0);
+  const Vector3 corner = of.low();
+  of.grow({missing[0], missing[1], missing[2]}, {missing[3], missing[4], missing[5]});
+  EXPECT_EQ(of.low().y(), corner.y() - missing[1] * of.edge()[1]);
+  for (const int cells : of.cells_to(far)) EXPECT_EQ(cells, 0);
+}
+
+TEST(CellLatticeUnit, RefusesTooManyCells) {
+  CellLattice of(1.0, 1e9);
+  EXPECT_THROW(of.span(Vector3::Constant(-5e9), Vector3::Constant(5e9)), spot::InvalidPacking);
+  CellLattice repeated = lattice(along_x);
+  EXPECT_THROW(repeated.span(low, std::array<int, 3>{3, 3, 3}), spot::InvalidState);
+}
+
+}  // namespace
