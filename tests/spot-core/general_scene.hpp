@@ -12,6 +12,7 @@
 #include "scenes.hpp"
 #include "spot/drivers/drainage.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
+#include "spot/drivers/windowed_drainage.hpp"
 #include "spot/geometry/base_plate.hpp"
 #include "spot/geometry/plane_wall.hpp"
 
@@ -117,6 +118,30 @@ class GeneralScene {
     return std::make_unique<spot::TimeOrderedDrainage>(spots_, relaxation_, limits_, silo_,
                                                        spot::Packing(diameter_, extent(), grains_, silo_->periodic()));
   }
+
+  spot::RelaxationParameters windowed_relaxation() const {
+    spot::RelaxationParameters relaxation = relaxation_;
+    relaxation.momentum = seed_ % 3 == 0 ? 0.0 : 0.6;
+    relaxation.tolerance = 2e-3;
+    return relaxation;
+  }
+
+  /// Each rank brings some of the grains.
+  std::unique_ptr<spot::WindowedDrainage> start_windowed(
+      int threads, std::shared_ptr<spot::Communicator> communicator = std::make_shared<spot::Alone>()) const {
+    std::vector<spot::Grain> own;
+    for (std::size_t i = 0; i < grains_.size(); ++i)
+      if (static_cast<int>(i) % communicator->size() == communicator->rank()) own.push_back(grains_[i]);
+    return std::make_unique<spot::WindowedDrainage>(spots_, windowed_relaxation(), limits_, window(), threads, silo_,
+                                                    diameter_, extent(), own, communicator);
+  }
+  std::unique_ptr<spot::WindowedDrainage> go_on(
+      const std::vector<spot::Bytes>& saved, int threads,
+      std::shared_ptr<spot::Communicator> communicator = std::make_shared<spot::Alone>()) const {
+    return std::make_unique<spot::WindowedDrainage>(spots_, windowed_relaxation(), limits_, window(), threads, silo_,
+                                                    diameter_, extent(), saved, communicator);
+  }
+  static constexpr double window() { return 0.01; }
 
   double diameter() const { return diameter_; }
   double extent() const { return 100.0 * diameter_; }

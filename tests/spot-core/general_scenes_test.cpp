@@ -6,10 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "invariants.hpp"
+#include "ranks_of_threads.hpp"
 #include "scenes.hpp"
 
 namespace {
@@ -52,6 +55,62 @@ TEST(GeneralScenesInvariance, HoldWhatEveryDrainageHolds) {
   EXPECT_LE(collapsed, 1u);
   EXPECT_GT(drained, 1000u);
   EXPECT_GT(moves, 20000u);
+}
+
+/// Grains in the order of ids, of all ranks.
+using All = std::map<std::int64_t, Grain>;
+
+void add_grains(const spot::Drainage& drainage, All& all) {
+  drainage.visit_grains([&](const Grain& grain) { EXPECT_TRUE(all.emplace(grain.id, grain).second) << grain.id; });
+}
+
+/// Goes on from a saved state, of one rank or more, on so many ranks until a time; `saved` is what they save then.
+All on_ranks(const scenes::GeneralScene& scene, int ranks, double time, std::vector<spot::Bytes>& saved) {
+  All all;
+  std::mutex mutex;
+  const std::vector<spot::Bytes> from = saved;
+  saved.assign(static_cast<std::size_t>(ranks), {});
+  scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
+    const auto drainage = from.empty() ? scene.start_windowed(1, communicator) : scene.go_on(from, 1, communicator);
+    drainage->advance_to(time);
+    const std::lock_guard<std::mutex> lock(mutex);
+    saved[static_cast<std::size_t>(communicator->rank())] = drainage->save();
+    add_grains(*drainage, all);
+  });
+  return all;
+}
+
+/// And on threads, and on ranks of another number half way.
+TEST(GeneralScenesInvariance, TheWindowedDriverHoldsThemToo) {
+  std::size_t drained = 0, shared = 0, collapsed = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const scenes::GeneralScene scene(seed);
+    SCOPED_TRACE(scene.description());
+    try {
+      const auto drainage = scene.start_windowed(1 + static_cast<int>(seed % 3));
+      invariants::Ledger ledger(scene.grains(), scene.diameter(), scene.limits(), *scene.silo());
+      for (int k = 1; k <= 6; ++k) {
+        drainage->advance_to(0.15 * k);
+        ASSERT_EQ(ledger.check(*drainage), "");
+        ASSERT_LT(ledger.overlaps().largest, scene.limits().largest_overlap_in_flow);
+        for (const Grain& grain : drainage->grains())
+          ASSERT_EQ(scene.silo()->periodic().on(drainage->quantum()).wrap(grain.position), grain.position);
+      }
+      drained += ledger.drained();
+      if (seed % 4 != 0) continue;
+      All alone;
+      add_grains(*drainage, alone);
+      std::vector<spot::Bytes> saved;
+      on_ranks(scene, 1 + static_cast<int>(seed % 3), 0.45, saved);
+      EXPECT_TRUE(on_ranks(scene, 3, 0.9, saved) == alone);
+      ++shared;
+    } catch (const spot::CollapsedPacking&) {
+      ++collapsed;
+    }
+  }
+  EXPECT_LE(collapsed, 2u);
+  EXPECT_GT(drained, 1000u);
+  EXPECT_GE(shared, 10u);
 }
 
 spot::SpotParameters dyadic_spots() {

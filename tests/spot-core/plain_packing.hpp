@@ -25,20 +25,29 @@ class PlainPacking {
   PlainPacking(double diameter, double extent, double outlet, const std::vector<spot::Grain>& grains,
                const spot::Container& container)
       : diameter_(diameter), quantum_(diameter, extent, 24), container_(container) {
-    const auto checked = spot::Packing(diameter, extent, grains).grains();
+    const auto checked = spot::Packing(diameter, extent, grains, container.periodic()).grains();
     low_ = checked.empty() ? spot::Vector3(0.0, 0.0, outlet) : checked[0].position;
     for (const spot::Grain& grain : checked) low_ = low_.cwiseMin(grain.position);
     low_.z() = std::min(low_.z(), outlet);
     for (double& coordinate : low_) coordinate = quantum_.snap(coordinate);
-    for (const spot::Grain& grain : checked)
-      bodies_.push_back({grain.id, grain.held, quanta(grain.position - low_), {0, 0, 0}});
+    periodic_ = container.periodic().on(quantum_);
+    for (int axis = 0; axis < 2; ++axis) {
+      if (!periodic_.along(axis)) continue;
+      low_[axis] = periodic_.low(axis);
+      period_[static_cast<std::size_t>(axis)] = std::llround(periodic_.length(axis) / quantum_.length());
+    }
+    for (const spot::Grain& grain : checked) {
+      bodies_.push_back({grain.id, grain.held, quanta(grain.position - low_), {0, 0, 0}, grain.radius});
+      unequal_ = unequal_ || grain.radius != 0.5 * diameter;
+    }
   }
 
   /// Of all grains in a move, in parts.
   int shares(const spot::Move& move, const spot::SpotParameters& spots) const {
     int sum = 0;
     for (const Body& body : bodies_)
-      sum += static_cast<int>(share(body, move, spots) * static_cast<float>(spot::grain_volume));
+      sum +=
+          static_cast<int>(share(body, move, spots) * static_cast<float>(spot::volume_parts(diameter_, body.radius)));
     return sum;
   }
 
@@ -98,13 +107,13 @@ class PlainPacking {
     std::int64_t id;
     bool held;
     Place at, last;
+    double radius;
     bool due = false;
   };
 
   float squared_distance(const Body& body, const spot::Move& move) const {
     const Place middle = quanta(move.middle - low_);
-    const float x = difference(body.at[0], middle[0]), y = difference(body.at[1], middle[1]),
-                z = difference(body.at[2], middle[2]);
+    const auto [x, y, z] = differences(body.at, middle);
     return (x * x + y * y) + z * z;
   }
 
@@ -127,45 +136,63 @@ class PlainPacking {
     const spot::Vector3 q = length / quantum_.length();
     return {std::llrint(q.x()), std::llrint(q.y()), std::llrint(q.z())};
   }
-  static float difference(std::int64_t a, std::int64_t b) { return static_cast<float>(a - b); }
+  /// To the nearest image.
+  std::array<float, 3> differences(const Place& a, const Place& b) const {
+    std::array<float, 3> apart{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::int64_t difference = a[axis] - b[axis];
+      const std::int64_t period = period_[axis];
+      while (period > 0 && 2 * difference > period) difference -= period;
+      while (period > 0 && 2 * difference < -period) difference += period;
+      apart[axis] = static_cast<float>(difference);
+    }
+    return apart;
+  }
+  /// 1 - r^2 / p^2, p being how far grains are apart that are left alone.
+  float overlap(float squared, const Body& a, const Body& b, double contact_overlap) const {
+    const double parted = (1.0 - contact_overlap) * diameter_ / quantum_.length();
+    if (!unequal_) return 1.0f - squared * static_cast<float>(1.0 / (parted * parted));
+    const auto in_quanta = [&](const Body& body) { return static_cast<float>(body.radius / quantum_.length()); };
+    const float apart = (in_quanta(a) + in_quanta(b)) * static_cast<float>(1.0 - contact_overlap);
+    return 1.0f - squared / (apart * apart);
+  }
   spot::Vector3 position(const Body& body) const {
     return low_ + quantum_.length() * spot::Vector3(static_cast<double>(body.at[0]), static_cast<double>(body.at[1]),
                                                     static_cast<double>(body.at[2]));
   }
-  spot::Grain grain(const Body& body) const { return {body.id, position(body), body.held}; }
+  spot::Grain grain(const Body& body) const {
+    return {body.id, periodic_.wrap(position(body)), body.held, body.radius};
+  }
 
   Place push_on(const Body& own, const spot::RelaxationParameters& parameters) const {
-    const double parted = (1.0 - parameters.contact_overlap) * diameter_ / quantum_.length();
-    const auto per_square = static_cast<float>(1.0 / (parted * parted));
     Place sum = {0, 0, 0};
     const auto add = [&sum](const Place& push) {
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += push[axis];
     };
     for (const Body& other : bodies_) {
       if (&other == &own) continue;
-      const float x = difference(own.at[0], other.at[0]), y = difference(own.at[1], other.at[1]),
-                  z = difference(own.at[2], other.at[2]);
-      const float s = 1.0f - ((x * x + y * y) + z * z) * per_square;
+      const auto [x, y, z] = differences(own.at, other.at);
+      const float s = overlap((x * x + y * y) + z * z, own, other, parameters.contact_overlap);
       if (!(s > 0.0f)) continue;
       const auto share = static_cast<float>(other.due ? parameters.pair_share() : parameters.fixed_share());
       const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
       add({static_cast<std::int64_t>(scale * x), static_cast<std::int64_t>(scale * y),
            static_cast<std::int64_t>(scale * z)});
-      const double apart = parameters.pair_share() * diameter_;
+      const double apart = parameters.pair_share() * (own.radius + other.radius);
       if (own.at == other.at) add(quanta({own.id < other.id ? -apart : apart, 0.0, 0.0}));
     }
     for (const spot::AxisPlane& plane : container_.axis_planes()) {
       const auto axis = static_cast<std::size_t>(plane.axis);
-      const double touching = plane.at + (plane.grains_below ? -0.5 : 0.5) * diameter_ - low_[plane.axis];
+      const double touching = plane.at + (plane.grains_below ? -own.radius : own.radius) - low_[plane.axis];
       const std::int64_t beyond = own.at[axis] - std::llrint(touching / quantum_.length());
       if (plane.grains_below ? beyond > 0 : beyond < 0)
         sum[axis] -=
             static_cast<std::int64_t>(static_cast<float>(parameters.fixed_share()) * static_cast<float>(beyond));
     }
     spot::WallContacts contacts;
-    container_.other_contacts(position(own), 0.5 * diameter_, contacts);
+    container_.other_contacts(position(own), own.radius, contacts);
     for (const spot::WallContact& wall : contacts)
-      add(quanta(parameters.fixed_share() * (0.5 * diameter_ - wall.distance) * wall.normal));
+      add(quanta(parameters.fixed_share() * (own.radius - wall.distance) * wall.normal));
     return sum;
   }
 
@@ -173,6 +200,9 @@ class PlainPacking {
   spot::Quantum quantum_;
   const spot::Container& container_;
   spot::Vector3 low_;
+  spot::Periodic periodic_;
+  Place period_ = {0, 0, 0};  // in quanta; 0 where space does not repeat
+  bool unequal_ = false;
   std::vector<Body> bodies_;
 };
 

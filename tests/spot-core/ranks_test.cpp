@@ -255,19 +255,21 @@ Bytes later(const Bytes& saved, std::int64_t steps, std::int64_t spots, std::int
   };
   const double time = static_cast<double>(windows) * window;
   shift(windows);
-  shift(spots);
-  shift(time);
   Counters counters = reader.take<Counters>();
   counters.moves += steps;
   spot::append(bytes, counters);
+  shift(spots);
+  shift(time);
   for (auto n = shift(std::uint64_t{0}); n > 0; --n) {
     shift(spots);
     shift(steps);
     spot::append(bytes, reader.take<spot::Vector3>());
     shift(time);
-    for (int k = 0; k < 3; ++k) shift(0.0);  // turn, chance, pace
-    spot::append(bytes, reader.take<bool>());
+    for (int k = 0; k < 3; ++k) shift(0.0);  // direction, chance, relative speed
   }
+  shift(std::int64_t{0});  // times that relative speeds were set
+  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // ends of the lattice of counts
+  spot::append(bytes, reader.take_all<std::int64_t>());
   spot::append(bytes, reader.take_all<char>());
   EXPECT_TRUE(reader.at_end());
   spot::seal(bytes);

@@ -8,7 +8,7 @@ import sys
 
 # From top to bottom.
 ROOMS = ("drivers", "relaxation", "packing", "walk", "geometry", "parallel", "base")
-LONGEST_HEADER = 400
+LONGEST_HEADER = 150
 
 
 def main(core):

@@ -11,6 +11,7 @@
 #include <ostream>
 #include <string>
 
+#include "general_scene.hpp"
 #include "plain_packing.hpp"
 #include "scenes.hpp"
 #include "spot/geometry/plane_wall.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 using scenes::PlainPacking;
 using spot::Grain;
+using spot::grain_volume;
 using spot::InvalidParameter;
 using spot::Move;
 using spot::Overlap;
@@ -29,7 +31,6 @@ using spot::SpotParameters;
 using spot::TiledPacking;
 using spot::Vector3;
 using spot::WalledContainer;
-using spot::grain_volume;
 using spot::Workers;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -41,13 +42,15 @@ std::vector<Grain> sorted_grains(const TiledPacking& packing) {
   return all;
 }
 
-/// The deepest overlap of all pairs, in diameters.
-double deepest_of(const std::vector<Grain>& grains, double diameter) {
-  double least = diameter * diameter;
+/// The deepest overlap of all pairs and their images, as a share of the sum of their radii.
+double deepest_of(const std::vector<Grain>& grains, const spot::Periodic& periodic = {}) {
+  double least = 1.0;
   for (std::size_t i = 0; i < grains.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      least = std::min(least, (grains[i].position - grains[j].position).squaredNorm());
-  return 1.0 - std::sqrt(least) / diameter;
+    for (std::size_t j = 0; j < i; ++j) {
+      const Vector3 apart = periodic.nearest(Vector3(grains[i].position - grains[j].position));
+      least = std::min(least, apart.norm() / (grains[i].radius + grains[j].radius));
+    }
+  return 1.0 - least;
 }
 
 /// Carries out moves with the weights that they have; the shares that they enclosed.
@@ -243,6 +246,32 @@ TEST(TiledPackingUnit, MoreAxisPlanesThanBitsAreStillWalls) {
   EXPECT_NEAR(sorted_grains(packing)[0].position.x(), 0.25 + 0.8 * 0.25, 1e-6);
 }
 
+/// Radii from a quarter to half of the diameter.
+Treatment unequal() {
+  Treatment t{"Unequal"};
+  t.grains = scenes::unequal_grains(1200, {-6, -4, 0}, {6, 4, 9}, {}, 11);
+  t.relaxation = relaxation_with(1.0, 0.6);
+  t.relaxation.contact_overlap = 1.5e-3;
+  for (std::size_t i = 0; i < t.grains.size(); i += 9) t.grains[i].held = true;
+  t.threads = 2;
+  return t;
+}
+
+/// Moves reach across the ends of the period, and grains go through them.
+Treatment repeating(const char* name, bool x, bool y, bool equal) {
+  Treatment t{name};
+  const Vector3 low(-6, -5, 0), high(6, 5, 9);
+  t.container = [=] { return scenes::repeated_silo(low, high, x, y, {{0, 0, 0}, 4.0}, {1.0, 1.0}); };
+  t.grains = scenes::unequal_grains(equal ? 500 : 1200, low, high, t.container()->periodic(), 12, 1.0, equal);
+  t.relaxation = relaxation_with(1.0, 0.6);
+  t.low = low;
+  t.high = high;
+  t.largest_step = 0.2;
+  t.one_way = true;
+  t.threads = 3;
+  return t;
+}
+
 class TiledPackingBruteForce : public testing::TestWithParam<Treatment> {};
 
 /// Moves and sweeps over everything, many more than a list survives.
@@ -286,7 +315,7 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
   }
   EXPECT_GT(total, 1000);
   // Lists are complete: they hold the deepest of all pairs.
-  const double deepest = deepest_of(plain.grains(), t.diameter);
+  const double deepest = deepest_of(plain.grains(), container->periodic());
   EXPECT_GT(deepest, 0.0);
   EXPECT_NEAR(tiled.largest_overlap().depth, deepest, 1e-9);
 }
@@ -294,14 +323,17 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
 INSTANTIATE_TEST_SUITE_P(Treatments, TiledPackingBruteForce,
                          testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_contacts(),
                                          with_held_grains(), coincident(), large_steps(), many_moves(), tall(),
-                                         far_from_the_origin(), in_metres(), in_a_cylinder(), in_a_funnel()),
+                                         far_from_the_origin(), in_metres(), in_a_cylinder(), in_a_funnel(), unequal(),
+                                         repeating("AlongX", true, false, true),
+                                         repeating("AlongY", false, true, false),
+                                         repeating("AlongBoth", true, true, false)),
                          [](const auto& treatment) { return treatment.param.name; });
 
 TEST(TiledPackingBruteForce, LargestOverlapIsThatOfAllPairs) {
   const auto space = scenes::empty_space();
   const auto grains = scenes::random_grains(300, {0, 0, 0}, {7, 7, 7}, 0.8, 5);
   const TiledPacking packing(1.0, 100.0, 0.0, grains, *space);
-  EXPECT_NEAR(packing.largest_overlap().depth, deepest_of(sorted_grains(packing), 1.0), 1e-15);
+  EXPECT_NEAR(packing.largest_overlap().depth, deepest_of(sorted_grains(packing)), 1e-15);
 }
 
 /// In a sweep over some cells, grains are pushed off those that stay with full strength.
@@ -604,7 +636,8 @@ TEST(TiledPackingUnit, NegativeIdsAreNamedAndZeroIsAnId) {
                   TiledPacking(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {bad, {3, 1, 1}}}, *space);
                 }),
                 HasSubstr("grain id " + std::to_string(bad) + " is negative"));
-  const std::vector<Grain> grains = {{0, {1, 1, 1}, false, 0.5}, {std::numeric_limits<std::int64_t>::max(), {3, 1, 1}, false, 0.5}};
+  const std::vector<Grain> grains = {{0, {1, 1, 1}, false, 0.5},
+                                     {std::numeric_limits<std::int64_t>::max(), {3, 1, 1}, false, 0.5}};
   EXPECT_EQ(sorted_grains(TiledPacking(1.0, 100.0, 0.0, grains, *space)), grains);
 }
 

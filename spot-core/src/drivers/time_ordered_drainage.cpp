@@ -20,16 +20,6 @@ std::vector<Grain> take_grains(ByteReader& saved) {
   return grains;
 }
 
-/// Do grains come down by themselves? Whoever lets them, TiledPacking, knows equal grains and space that does not
-/// repeat.
-bool may_settle(const Packing& packing, const std::vector<Grain>& come = {}) {
-  const double radius = 0.5 * packing.diameter();
-  const auto equal = [&](const Grain& grain) { return radius_in(packing.diameter(), grain) == radius; };
-  const std::vector<Grain> grains = packing.grains();
-  return !packing.periodic().any() && std::all_of(grains.begin(), grains.end(), equal) &&
-         std::all_of(come.begin(), come.end(), equal);
-}
-
 }  // namespace
 
 TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,
@@ -41,7 +31,6 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
       relaxation_(relaxation) {
   require_same_periods();
   require_valid_start();
-  if (!may_settle(packing_)) return;
   TiledPacking tiled(packing_.diameter(), packing_.extent(), limits.outlet, packing_.grains(), Drainage::container());
   let_settle(tiled, true);
 }
@@ -154,8 +143,6 @@ void TimeOrderedDrainage::take_out_drained() {
 }
 
 Overlap TimeOrderedDrainage::carry_out(const GrainChanges& changes) {
-  if (!may_settle(packing_, changes.come))
-    throw InvalidPacking("grains cannot come or go yet where they have unequal radii or space repeats");
   TiledPacking tiled(packing_.diameter(), packing_.extent(), limits().outlet, packing_.grains(), container());
   const Overlap largest = tiled.change(changes.gone, changes.come, container());
   const std::set<std::int64_t> gone(changes.gone.begin(), changes.gone.end());
@@ -163,7 +150,7 @@ Overlap TimeOrderedDrainage::carry_out(const GrainChanges& changes) {
   for (const Grain& grain : packing_.grains())
     if (gone.count(grain.id) == 0) grains.push_back(grain);
   grains.insert(grains.end(), changes.come.begin(), changes.come.end());
-  packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
+  packing_ = Packing(packing_.diameter(), packing_.extent(), grains, packing_.periodic());
   if (largest.depth <= limits().largest_overlap) let_settle(tiled, false);
   return largest;
 }
@@ -182,7 +169,7 @@ void TimeOrderedDrainage::let_settle(TiledPacking& tiled, bool everybody) {
   std::vector<Grain> grains = packing_.grains();
   for (Grain& grain : grains)
     if (const auto found = moved.find(grain.id); found != moved.end()) grain.position = found->second;
-  packing_ = Packing(packing_.diameter(), packing_.extent(), grains);
+  packing_ = Packing(packing_.diameter(), packing_.extent(), grains, packing_.periodic());
 }
 
 void TimeOrderedDrainage::take_new_container() {

@@ -189,6 +189,7 @@ void WindowedDrainage::let_settle(bool everybody) {
 }
 
 void WindowedDrainage::take_new_container() {
+  packing_.require_same_periods(container());
   packing_.mark_near_walls(container());
   spots_.replace_container(container());
 }

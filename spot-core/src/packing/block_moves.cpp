@@ -74,24 +74,56 @@ const std::vector<int>& BlockMoves::find(const std::vector<Move>& moves, const S
   return enclosed_;
 }
 
+/// Grains move by the image of a move that is nearest to them.
+void BlockMoves::find_rows_of_images(Part& part, const Vector3& middle, double reach) const {
+  const CellLattice& lattice = cells_.lattice();
+  const Periodic& periodic = lattice.periodic();
+  const auto range = [&](int axis) { return periodic.along(axis) ? 1 : 0; };
+  for (int y = -range(1); y <= range(1); ++y)
+    for (int x = -range(0); x <= range(0); ++x) {
+      Vector3 image = middle;
+      if (x != 0) image.x() += x * periodic.length(0);
+      if (y != 0) image.y() += y * periodic.length(1);
+      bool reaches = true;
+      for (int axis = 0; axis < 2; ++axis)
+        if (periodic.along(axis))
+          reaches = reaches && image[axis] + reach >= 0.0 && image[axis] - reach <= periodic.length(axis);
+      if (reaches) lattice.find_rows(image, reach, part.first_layer, part.last_layer, false, part.rows);
+      part.shifts.resize(part.rows.size(), lattice.periods(x, y));
+    }
+}
+
+/// Of the move, or of its image that reaches a row.
+Point BlockMoves::middle(const Part& part, std::size_t move, std::size_t row) const {
+  Point middle = middles_[move];
+  if (!part.shifts.empty()) add(middle, part.shifts[row]);
+  return middle;
+}
+
 /// The rows of cells that the moves may reach, and the enclosed of the grains there.
 void BlockMoves::find(Part& part, const std::vector<Move>& moves, double radius) {
   const CellLattice& lattice = cells_.lattice();
   const double reach = BlockMoves::reach(radius, lattice);
   part.rows.clear();
+  part.shifts.clear();
   part.end_of_rows.clear();
   part.enclosed.clear();
   for (std::size_t m = 0; m < moves.size(); ++m) {
     const std::size_t before = part.rows.size();
-    lattice.find_rows(moves[m].middle - lattice.low(), reach, part.first_layer, part.last_layer, part.rows);
+    const Vector3 from_low = moves[m].middle - lattice.low();
+    if (lattice.periodic().any())
+      find_rows_of_images(part, from_low, reach);
+    else
+      lattice.find_rows(from_low, reach, part.first_layer, part.last_layer, false, part.rows);
     int enclosed = 0;
     for (std::size_t r = before; r < part.rows.size(); ++r) {
       const CellRow& row = part.rows[r];
       const std::uint32_t first = cells_.first_slot(row.first), n = cells_.first_slot(row.last) - first;
+      const Point middle = this->middle(part, m, r);
+      const Point* points = cells_.points.data() + first;
       enclosed += cells_.unequal()
-                      ? kernels_.enclosed_volume_of_unequal(cells_.points.data() + first, cells_.sizes.data() + first,
-                                                            n, middles_[m], reach_)
-                      : kernels_.enclosed_volume(cells_.points.data() + first, n, middles_[m], reach_);
+                      ? kernels_.enclosed_volume_of_unequal(points, cells_.sizes.data() + first, n, middle, reach_)
+                      : kernels_.enclosed_volume(points, n, middle, reach_);
       cells_reached_[cells_.layer_of(row.first)] += row.last - row.first;
     }
     part.end_of_rows.push_back(part.rows.size());
@@ -159,8 +191,9 @@ void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool coun
     });
     for (std::size_t r = part.first_row(m); r < part.end_of_rows[m]; ++r) {
       const std::uint32_t slot = cells_.first_slot(part.rows[r].first), n = cells_.first_slot(part.rows[r].last) - slot;
-      if (count) count_received(slot, n, middles_[m], found);
-      kernels_.displace(cells_.points.data() + slot, n, middles_[m], reach_, steps_[m]);
+      const Point middle = this->middle(part, m, r);
+      if (count) count_received(slot, n, middle, found);
+      kernels_.displace(cells_.points.data() + slot, n, middle, reach_, steps_[m]);
     }
   }
 }
@@ -177,7 +210,7 @@ void BlockMoves::count_received(std::uint32_t first, std::uint32_t n, const Poin
 
 std::size_t BlockMoves::memory() const {
   std::size_t bytes = bytes_in(parts_, cells_reached_, middles_, steps_, enclosed_, received_);
-  for (const Part& part : parts_) bytes += bytes_in(part.rows, part.end_of_rows, part.enclosed);
+  for (const Part& part : parts_) bytes += bytes_in(part.rows, part.shifts, part.end_of_rows, part.enclosed);
   return bytes;
 }
 

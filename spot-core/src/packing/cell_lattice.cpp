@@ -29,21 +29,34 @@ void require_countable(double n, double most, double edge, std::size_t axis) {
 
 }  // namespace
 
-CellLattice::CellLattice(double diameter, double extent)
+CellLattice::CellLattice(double diameter, double extent, const Periodic& periodic)
     : diameter_(diameter),
       extent_(extent),
       quantum_(diameter, extent, quantum_bits),
+      periodic_(periodic.on(quantum_)),
       skin_(skin_in_diameters * diameter) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    edge_quanta_[axis] = std::llround(edges_in_diameters[axis] * diameter_ / quantum_.length());
-    edge_[axis] = static_cast<double>(edge_quanta_[axis]) * quantum_.length();
-    per_edge_[axis] = 1.0 / edge_[axis];
+  for (std::size_t axis = 0; axis < 3; ++axis) set_edge(axis);
+}
+
+/// Along an axis on which space repeats, a whole number of cells, none smaller than elsewhere, takes up the period; the
+/// last one has the quanta that are left over.
+void CellLattice::set_edge(std::size_t axis) {
+  edge_quanta_[axis] = std::llround(edges_in_diameters[axis] * diameter_ / quantum_.length());
+  if (periodic_.along(static_cast<int>(axis))) {
+    period_[axis] = std::llround(periodic_.length(static_cast<int>(axis)) / quantum_.length());
+    n_[axis] = static_cast<int>(std::max<std::int64_t>(1, period_[axis] / edge_quanta_[axis]));
+    edge_quanta_[axis] = period_[axis] / n_[axis];
+    low_[static_cast<Eigen::Index>(axis)] = periodic_.low(static_cast<int>(axis));
+    images_[axis] = 1;
   }
+  edge_[axis] = static_cast<double>(edge_quanta_[axis]) * quantum_.length();
+  per_edge_[axis] = 1.0 / edge_[axis];
 }
 
 void CellLattice::span(const Vector3& low, const Vector3& high) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
+    if (images_[a] != 0) continue;
     low_[axis] = quantum_.snap(low[axis]);
     const double n = std::floor((high[axis] - low[axis]) / edge_[a]) + 1.0;
     require_countable(n, std::numeric_limits<std::int32_t>::max(), edge_[a], a);
@@ -52,6 +65,10 @@ void CellLattice::span(const Vector3& low, const Vector3& high) {
 }
 
 void CellLattice::span(const Vector3& low, const std::array<int, 3>& size) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (images_[axis] != 0 &&
+        (size[axis] != n_[axis] || low[static_cast<Eigen::Index>(axis)] != low_[static_cast<Eigen::Index>(axis)]))
+      throw InvalidState(message("the saved state does not repeat along ", "xyz"[axis], " as the container does"));
   low_ = low;
   n_ = size;
 }
@@ -59,6 +76,7 @@ void CellLattice::span(const Vector3& low, const std::array<int, 3>& size) {
 std::array<int, 6> CellLattice::cells_to(const Vector3& place) const {
   std::array<int, 6> cells{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (images_[axis] != 0) continue;
     const double at = (place[static_cast<Eigen::Index>(axis)] - low_[static_cast<Eigen::Index>(axis)]);
     cells[axis] = at < 0.0 ? static_cast<int>(std::ceil(-at * per_edge_[axis])) : 0;
     cells[axis + 3] = std::max(0, static_cast<int>(std::floor(at * per_edge_[axis])) + 1 - n_[axis]);
@@ -76,8 +94,8 @@ void CellLattice::grow(const std::array<int, 3>& below, const std::array<int, 3>
 }
 
 Cell CellLattice::cell(std::uint32_t number) const {
-  const int i = static_cast<int>(number), in_layer = i % (n_[0] * n_[1]);
-  return {in_layer % n_[0], in_layer / n_[0], i / (n_[0] * n_[1]) + first_layer_};
+  const int i = static_cast<int>(number), layer = held(0) * held(1), in_layer = i % layer;
+  return {in_layer % held(0) - images_[0], in_layer / held(0) - images_[1], i / layer + first_layer_};
 }
 
 std::array<std::int64_t, 3> CellLattice::quanta(const Vector3& from_low) const {
@@ -102,15 +120,44 @@ Point CellLattice::wrapped_cells(const std::array<int, 3>& cells) const {
   return {wrap(cells[0] * edge_quanta_[0]), wrap(cells[1] * edge_quanta_[1]), wrap(cells[2] * edge_quanta_[2]), 0};
 }
 
-void CellLattice::find_rows(const Vector3& at, double reach, int first, int last, std::vector<CellRow>& rows) const {
+Point CellLattice::periods(int along_x, int along_y) const {
+  return {wrap(along_x * period_[0]), wrap(along_y * period_[1]), 0, 0};
+}
+
+Point CellLattice::shift_to(const Cell& image) const {
+  const auto side = [](int cell, int n) { return cell < 0 ? -1 : cell >= n ? 1 : 0; };
+  return periods(side(image.x, n_[0]), side(image.y, n_[1]));
+}
+
+/// The outermost cells also hold what lies beyond the lattice, unless there are images.
+double CellLattice::end_of_cell(int cell, std::size_t axis, bool high) const {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (images_[axis] == 0) {
+    if (high && cell == n_[axis] - 1) return infinite;
+    if (!high && cell == 0) return -infinite;
+  }
+  const int end = high ? cell + 1 : cell;
+  if (images_[axis] == 0 || (end >= 0 && end < n_[axis])) return end * edge_[axis];
+  const double period = periodic_.length(static_cast<int>(axis));
+  return end < 0 ? (n_[axis] - 1) * edge_[axis] - period : period + (end - n_[axis]) * edge_[axis];
+}
+
+/// The cell along an axis in which a place is, perhaps an image.
+int CellLattice::first_within(double from_low, int axis, bool with_images) const {
+  const auto a = static_cast<std::size_t>(axis);
+  if (images_[a] == 0 || !with_images) return coordinate(from_low, axis);
+  if (from_low < 0.0) return -1;
+  return from_low >= periodic_.length(axis) ? n_[a] : coordinate(from_low, axis);
+}
+
+void CellLattice::find_rows(const Vector3& at, double reach, int first, int last, bool with_images,
+                            std::vector<CellRow>& rows) const {
   const int z0 = std::max(first, coordinate(at.z() - reach, 2));
   const int z1 = std::min(last - 1, coordinate(at.z() + reach, 2));
-  const int y0 = coordinate(at.y() - reach, 1), y1 = coordinate(at.y() + reach, 1);
-  // Squared distance along one axis to a cell; the outermost cells also hold what lies beyond the lattice.
-  const auto gap = [this](double from_low, int cell, int axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const double before = cell == 0 ? 0.0 : cell * edge_[a] - from_low;
-    const double beyond = cell == n_[a] - 1 ? 0.0 : from_low - (cell + 1) * edge_[a];
+  const int y0 = first_within(at.y() - reach, 1, with_images), y1 = first_within(at.y() + reach, 1, with_images);
+  // Squared distance along one axis to a cell.
+  const auto gap = [this](double from_low, int cell, std::size_t axis) {
+    const double before = end_of_cell(cell, axis, false) - from_low, beyond = from_low - end_of_cell(cell, axis, true);
     return square(std::max(0.0, std::max(before, beyond)));
   };
   for (int iz = z0; iz <= z1; ++iz) {
@@ -119,9 +166,8 @@ void CellLattice::find_rows(const Vector3& at, double reach, int first, int last
       const double in_row = in_layer - gap(at.y(), iy, 1);
       if (in_row < 0.0) continue;
       const double half = std::sqrt(in_row);
-      const std::uint32_t row = number_of({0, iy, iz});
-      rows.push_back({row + static_cast<std::uint32_t>(coordinate(at.x() - half, 0)),
-                      row + static_cast<std::uint32_t>(coordinate(at.x() + half, 0)) + 1});
+      rows.push_back({number_of({first_within(at.x() - half, 0, with_images), iy, iz}),
+                      number_of({first_within(at.x() + half, 0, with_images), iy, iz}) + 1});
     }
   }
 }

@@ -25,16 +25,7 @@ void require_countable(double slots, std::uint32_t cells) {
 }  // namespace
 
 void Cells::hold(const Slabs& slabs, int rank) {
-  slabs_ = slabs;
-  rank_ = rank;
-  const int first = first_own_layer(), layers = own_layers();
-  ghost_layers_ = {layers > 0 && first > 0 ? 1 : 0, layers > 0 && first + layers < lattice_.layers() ? 1 : 0};
-  const double cells = (static_cast<double>(layers) + ghost_layers_[below] + ghost_layers_[above]) *
-                       lattice_.size()[0] * lattice_.size()[1];
-  if (cells * first_room * kernels::lanes > std::numeric_limits<std::uint32_t>::max())
-    throw InvalidPacking(message("grains are spread over more than ", cells, " cells of ", lattice_.edge()[0], " by ",
-                                 lattice_.edge()[1], " by ", lattice_.edge()[2], ", which is too many"));
-  lattice_.hold(first - ghost_layers_[below], first + layers + ghost_layers_[above]);
+  hold_layers(slabs, rank, std::numeric_limits<std::uint32_t>::max() / (first_room * kernels::lanes));
   const std::uint32_t n = count(), slots = n * first_room;
   first_slot_.resize(n + 1);
   cell_of_.resize(slots);
@@ -44,27 +35,26 @@ void Cells::hold(const Slabs& slabs, int rank) {
   references.assign(slots, nobody);
   corrections.assign(slots, {0, 0, 0, 0});
   ids.assign(slots, -1);
-  if (unequal_) sizes.assign(slots, size_of(0.5 * lattice_.diameter()));
+  if (unequal_) sizes.assign(slots, size_of(0.5 * lattice().diameter()));
   unrelaxed.assign(n, 0);
   drift.assign(n, 0);
   changed_ = {};
+  changed_in_images_.clear();
   size_ = 0;
   for (SlotData* data : attached_) data->renumber({}, slots);
 }
 
-std::uint32_t Cells::first_of_border(Side side) const { return side == below ? first_own() : last_own() - in_layer(); }
-
 // ---- sizes
 
 GrainSize Cells::size_of(double radius) const {
-  return {radius, static_cast<float>(radius / lattice_.quantum().length()),
-          static_cast<float>(volume_parts(lattice_.diameter(), radius))};
+  return {radius, static_cast<float>(radius / lattice().quantum().length()),
+          static_cast<float>(volume_parts(lattice().diameter(), radius))};
 }
 
 void Cells::allow_unequal() {
   if (unequal_) return;
   unequal_ = true;
-  sizes.assign(slots(), size_of(0.5 * lattice_.diameter()));
+  sizes.assign(slots(), size_of(0.5 * lattice().diameter()));
 }
 
 void Cells::set_radius(std::uint32_t slot, double radius) {
@@ -110,7 +100,7 @@ void Cells::give_room(std::uint32_t cell) {
   spread(references, nobody);
   spread(corrections, Point{0, 0, 0, 0});
   spread(ids, std::int64_t{-1});
-  if (unequal_) spread(sizes, size_of(0.5 * lattice_.diameter()));
+  if (unequal_) spread(sizes, size_of(0.5 * lattice().diameter()));
   first_slot_ = std::move(first);
   cell_of_.resize(slots);
   for (std::uint32_t c = 0; c < count(); ++c)
@@ -138,6 +128,8 @@ void Cells::vacate(std::uint32_t slot) {
 
 void Cells::note_change(std::uint32_t slot) {
   const Place place = place_of(slot);
+  if (is_image(place.cell)) return;
+  if (repeat()) changed_in_images_.push_back(place);
   if (!own(place.cell)) return;
   for (const Side side : {below, above}) {
     const std::uint32_t first = first_of_border(side);
@@ -148,7 +140,7 @@ void Cells::note_change(std::uint32_t slot) {
 // ---- the rest
 
 Grain Cells::grain(std::uint32_t slot) const {
-  return {ids[slot], position(slot), points[slot].state == Point::held, radius(slot)};
+  return {ids[slot], lattice().periodic().wrap(position(slot)), points[slot].state == Point::held, radius(slot)};
 }
 
 std::vector<std::int64_t> Cells::grains_in_own_layers() const {

@@ -2,6 +2,9 @@
 #include "spot/packing/ghost_layers.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "packing/wrapped_integers.hpp"
 
 #include "spot/base/errors.hpp"
 
@@ -64,13 +67,59 @@ void GhostLayers::exchange_migrants(const Container& container) {
 }
 
 void GhostLayers::exchange(const Container& container) {
-  if (communicator_->size() == 1) return;
+  if (communicator_->size() > 1) exchange_layers(container);
+  if (cells_.repeat()) update_images(container);
+}
+
+void GhostLayers::exchange_layers(const Container& container) {
   std::array<Bytes, 2> outgoing;
   for (const Side side : sides)
     if (cells_.has_ghosts(side)) outgoing[side] = changes(side);
   const auto incoming = communicator_->exchange_with_neighbours(std::move(outgoing));
   for (const Side side : sides)
     if (cells_.has_ghosts(side)) take_changes(incoming[side], side, container);
+}
+
+/// An image has the grains of its source in the same places, a period away.
+void GhostLayers::update_images(const Container& container) {
+  const CellLattice& lattice = cells_.lattice();
+  std::vector<std::pair<Place, Place>> changed;  // of a source, and of its image
+  for (const Place& place : cells_.take_changes_seen_in_images())
+    for (const std::uint32_t image : cells_.images_of(place.cell)) changed.push_back({place, {image, place.in_cell}});
+  for (const auto& [source, image] : changed) {
+    cells_.ensure_place(image);
+    const std::uint32_t at = cells_.slot(image);
+    if (!cells_.occupied(at)) continue;
+    lists_.unlist(at);
+    cells_.vacate(at);
+  }
+  std::vector<Place> come;
+  for (const auto& [source, image] : changed) {
+    const std::uint32_t from = cells_.slot(source), to = cells_.slot(image);
+    if (!cells_.occupied(from) || cells_.occupied(to)) continue;
+    const Point by = lattice.shift_to(lattice.cell(image.cell));
+    Point point = cells_.points[from], reference = cells_.references[from];
+    add(point, by);
+    add(reference, by);
+    cells_.occupy(to, cells_.ids[from], point, reference);
+    cells_.set_radius(to, cells_.radius(from));
+    come.push_back(image);
+  }
+  for (const Place& place : come) lists_.list(cells_.slot(place), container);
+  for (std::uint32_t source = 0; source < cells_.count(); ++source)
+    for (const std::uint32_t image : cells_.images_of(source)) copy_to_image(source, image);
+}
+
+void GhostLayers::copy_to_image(std::uint32_t source, std::uint32_t image) {
+  cells_.unrelaxed[image] = cells_.unrelaxed[source];
+  const Point by = cells_.lattice().shift_to(cells_.lattice().cell(image));
+  const std::uint32_t first = cells_.first_slot(source);
+  cells_.visit(image, image + 1, [&](std::uint32_t slot) {
+    Point point = cells_.points[first + slot - cells_.first_slot(image)];
+    add(point, by);
+    point.state = cells_.points[slot].state;
+    cells_.points[slot] = point;
+  });
 }
 
 void GhostLayers::choose(std::int32_t parts) {
@@ -87,7 +136,8 @@ void GhostLayers::choose(std::int32_t parts) {
 template <typename Visit>
 void GhostLayers::visit_sent(std::uint32_t first_cell, const Visit& visit) const {
   for (std::uint32_t cell = first_cell; cell < first_cell + cells_.in_layer(); ++cell)
-    if (sent_[cell] != 0) cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.points[slot]); });
+    if (sent_[cell] != 0 && !cells_.is_image(cell))
+      cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.points[slot]); });
 }
 
 /// What has changed in the layer next to a neighbour's since it was told last, the moves that its cells have received,

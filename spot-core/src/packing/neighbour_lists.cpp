@@ -70,7 +70,7 @@ void NeighbourLists::find_neighbours(std::uint32_t slot, Finding& finding) const
   Point centre = cells_.references[slot];
   finding.rows.clear();
   lattice.find_rows(cells_.from_low(centre, cells_.cell_of(slot)), reach, lattice.first_layer(), lattice.last_layer(),
-                    finding.rows);
+                    true, finding.rows);
   centre.state = Point::free;
   std::size_t end = finding.ends.empty() ? 0 : finding.ends.back();
   const auto before = static_cast<std::ptrdiff_t>(end);

@@ -7,23 +7,16 @@
 
 namespace spot {
 
-namespace {
-
-/// Of the whole lattice, before those held.
-std::int64_t cells_before(const CellLattice& lattice) {
-  return static_cast<std::int64_t>(lattice.first_layer()) * lattice.cells_in_layer();
-}
-
-}  // namespace
-
 void append_layers(Bytes& bytes, const Cells& cells, int first, int last) {
-  const std::int64_t before = cells_before(cells.lattice());
+  const CellLattice& lattice = cells.lattice();
   SavedLayers saved;
   for (std::uint32_t cell = cells.lattice().first_cell_of(first); cell < cells.lattice().first_cell_of(last); ++cell) {
+    if (cells.is_image(cell)) continue;
+    const std::int64_t number = lattice.number_in_all(lattice.cell(cell));
     if (cells.unrelaxed[cell] != 0 || cells.drift[cell] != 0)
-      saved.cells.push_back({before + cell, cells.unrelaxed[cell], cells.drift[cell]});
+      saved.cells.push_back({number, cells.unrelaxed[cell], cells.drift[cell]});
     cells.visit(cell, cell + 1, [&](std::uint32_t slot) {
-      saved.grains.push_back({cells.ids[slot], before + cell, cells.points[slot], cells.references[slot],
+      saved.grains.push_back({cells.ids[slot], number, cells.points[slot], cells.references[slot],
                               cells.corrections[slot], cells.radius(slot)});
     });
   }
@@ -32,7 +25,7 @@ void append_layers(Bytes& bytes, const Cells& cells, int first, int last) {
 }
 
 void SavedLayers::take(ByteReader& reader, const CellLattice& lattice) {
-  const std::int64_t all_cells = static_cast<std::int64_t>(lattice.cells_in_layer()) * lattice.layers();
+  const std::int64_t all_cells = static_cast<std::int64_t>(lattice.size()[0]) * lattice.size()[1] * lattice.layers();
   const auto take = [&](auto& all, const auto& part) {
     for (const auto& one : part) {
       if (one.cell < 0 || one.cell >= all_cells)
@@ -55,27 +48,26 @@ bool SavedLayers::unequal(double diameter) const {
 }
 
 void SavedLayers::fill(Cells& into) const {
-  const std::int64_t before = cells_before(into.lattice());
-  const auto is_own = [&](std::int64_t cell) {
-    return into.slabs().owner(static_cast<int>(cell / into.in_layer())) == into.rank();
-  };
+  const CellLattice& lattice = into.lattice();
+  const auto is_own = [&](std::int64_t cell) { return into.slabs().owner(lattice.cell_in_all(cell).z) == into.rank(); };
+  const auto held = [&](std::int64_t cell) { return lattice.number_of(lattice.cell_in_all(cell)); };
   for (const SavedGrain& grain : grains) {
     if (!is_own(grain.cell)) continue;
-    const Place place = into.ensure_room(static_cast<std::uint32_t>(grain.cell - before));
+    const Place place = into.ensure_room(held(grain.cell));
     into.occupy(into.slot(place), grain.id, grain.point, grain.reference);
     into.corrections[into.slot(place)] = grain.correction;
     into.set_radius(into.slot(place), grain.radius);
   }
   for (const SavedCell& cell : cells) {
     if (!is_own(cell.cell)) continue;
-    into.unrelaxed[static_cast<std::size_t>(cell.cell - before)] = cell.unrelaxed;
-    into.drift[static_cast<std::size_t>(cell.cell - before)] = cell.drift;
+    into.unrelaxed[held(cell.cell)] = cell.unrelaxed;
+    into.drift[held(cell.cell)] = cell.drift;
   }
 }
 
 std::vector<std::int64_t> SavedLayers::grains_in_layers(const CellLattice& lattice) const {
   std::vector<std::int64_t> in_layer(static_cast<std::size_t>(lattice.layers()), 0);
-  for (const SavedGrain& grain : grains) ++in_layer[static_cast<std::size_t>(grain.cell / lattice.cells_in_layer())];
+  for (const SavedGrain& grain : grains) ++in_layer[static_cast<std::size_t>(lattice.cell_in_all(grain.cell).z)];
   return in_layer;
 }
 

@@ -10,6 +10,7 @@
 #include "packing/packed_grain.hpp"
 #include "packing/push_off_neighbours.hpp"
 #include "packing/wrapped_integers.hpp"
+#include "spot/base/errors.hpp"
 #include "spot/base/memory.hpp"
 #include "spot/packing/packing.hpp"
 
@@ -39,10 +40,11 @@ std::vector<double> box_of(const std::vector<Grain>& grains, double outlet, Comm
 
 }  // namespace
 
-TiledPacking::TiledPacking(double diameter, double extent, std::shared_ptr<Communicator> communicator)
+TiledPacking::TiledPacking(double diameter, double extent, const Periodic& periodic,
+                           std::shared_ptr<Communicator> communicator)
     : kernels_(kernels::best()),
       communicator_(std::move(communicator)),
-      cells_(CellLattice(diameter, extent)),
+      cells_(CellLattice(diameter, extent, periodic)),
       walls_(cells_),
       lists_(cells_, walls_, kernels_),
       ghosts_(cells_, lists_, communicator_),
@@ -50,9 +52,9 @@ TiledPacking::TiledPacking(double diameter, double extent, std::shared_ptr<Commu
 
 TiledPacking::TiledPacking(double diameter, double extent, double outlet, const std::vector<Grain>& grains,
                            const Container& container, std::shared_ptr<Communicator> communicator)
-    : TiledPacking(diameter, extent, std::move(communicator)) {
+    : TiledPacking(diameter, extent, container.periodic(), std::move(communicator)) {
   // Packing checks what can be wrong with grains.
-  const std::vector<Grain> checked = Packing(diameter, extent, grains).grains();
+  const std::vector<Grain> checked = Packing(diameter, extent, grains, container.periodic()).grains();
   const std::vector<double> box = box_of(checked, outlet, *communicator_);
   CellLattice& lattice = cells_.lattice();
   lattice.span(Vector3(box[0], box[1], box[2]), Vector3(-box[3], -box[4], -box[5]));
@@ -61,7 +63,7 @@ TiledPacking::TiledPacking(double diameter, double extent, double outlet, const 
   set_slabs(Slabs(communicator_->sum(in_layer), communicator_->size()));
   if (some_are_smaller(checked)) cells_.allow_unequal();
   for (const Grain& grain : take_own(checked)) {
-    const Vector3 at = grain.position - lattice.low();
+    const Vector3 at = lattice.periodic().wrap(grain.position) - lattice.low();
     Point point = lattice.wrapped(at);
     if (grain.held) point.state = Point::held;
     const Place place = cells_.ensure_room(lattice.number_of(lattice.cell_at(at)));
@@ -84,6 +86,11 @@ std::vector<Grain> TiledPacking::take_own(const std::vector<Grain>& grains) cons
   for (const Bytes& bytes : communicator_->exchange(std::move(outgoing)))
     for (ByteReader reader(bytes); !reader.at_end();) own.push_back(take_grain(reader));
   return own;
+}
+
+void TiledPacking::require_same_periods(const Container& container) const {
+  if (container.periodic().on(quantum()) != cells_.lattice().periodic())
+    throw InvalidContainer("space repeats otherwise in the container than in the packing");
 }
 
 /// Collective.
@@ -112,8 +119,7 @@ void TiledPacking::update_lists(const Container& container, Workers& workers) {
   find_drifted();
   lists_.list(drifted_, container, workers);
   drifted_.clear();
-  if (communicator_->size() == 1) return;
-  ghosts_.exchange_migrants(container);
+  if (communicator_->size() > 1) ghosts_.exchange_migrants(container);
   ghosts_.exchange(container);
 }
 
@@ -140,7 +146,15 @@ void TiledPacking::find_drifted() {
 void TiledPacking::move_reference(Place place) {
   const CellLattice& lattice = cells_.lattice();
   const std::uint32_t from = cells_.slot(place);
-  const Cell cell = lattice.cell_at(cells_.from_low(cells_.points[from], place.cell));
+  Vector3 at = cells_.from_low(cells_.points[from], place.cell);
+  if (lattice.periodic().any()) {
+    // It goes on where it has come in on the other side.
+    const Vector3 inside = lattice.periodic().wrap(Vector3(lattice.low() + at)) - lattice.low();
+    const auto periods = [&](int axis) { return inside[axis] > at[axis] ? 1 : inside[axis] < at[axis] ? -1 : 0; };
+    add(cells_.points[from], lattice.periods(periods(0), periods(1)));
+    at = inside;
+  }
+  const Cell cell = lattice.cell_at(at);
   if (cells_.slabs().owner(cell.z) != communicator_->rank()) {
     ghosts_.emigrate(from, cell);
     return;
@@ -198,7 +212,8 @@ void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {
       std::clamp(lattice.layer(outlet + lattice.skin()) + 1 - cells_.first_own_layer(), 0, cells_.own_layers());
   const std::uint32_t last = cells_.first_own() + static_cast<std::uint32_t>(layers) * cells_.in_layer();
   cells_.visit(cells_.first_own(), last, [&](std::uint32_t slot) {
-    if (cells_.points[slot].state != Point::free || cells_.position(slot).z() >= outlet) return;
+    const bool stays = cells_.points[slot].state != Point::free || cells_.position(slot).z() >= outlet;
+    if (stays || !cells_.own(cells_.cell_of(slot))) return;
     drained.push_back(cells_.grain(slot));
     lists_.unlist(slot);
     cells_.vacate(slot);

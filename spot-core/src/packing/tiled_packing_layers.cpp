@@ -31,7 +31,7 @@ constexpr double worth_a_change = 0.96;
 
 TiledPacking::TiledPacking(double diameter, double extent, const std::vector<Bytes>& saved, const Container& container,
                            std::shared_ptr<Communicator> communicator)
-    : TiledPacking(diameter, extent, std::move(communicator)) {
+    : TiledPacking(diameter, extent, container.periodic(), std::move(communicator)) {
   CellLattice& lattice = cells_.lattice();
   SavedLayers layers;
   for (const Bytes& part : saved) {
@@ -119,10 +119,8 @@ namespace {
 std::vector<SavedCell> shift(SavedLayers& layers, const CellLattice& old, const CellLattice& now,
                              const std::array<int, 3>& below) {
   const auto shifted = [&](std::int64_t number) {
-    const auto x = static_cast<int>(number % old.size()[0]),
-               y = static_cast<int>(number / old.size()[0] % old.size()[1]);
-    const auto z = static_cast<int>(number / old.size()[0] / old.size()[1]);
-    return Cell{x + below[0], y + below[1], z + below[2]};
+    const Cell cell = old.cell_in_all(number);
+    return Cell{cell.x + below[0], cell.y + below[1], cell.z + below[2]};
   };
   const Point by = now.wrapped_cells(below);
   std::vector<SavedCell> entered;
@@ -155,9 +153,9 @@ void TiledPacking::grow(const std::array<int, 3>& below, const std::array<int, 3
   layers.fill(cells_);
   list_all(container);
   for (const SavedCell& cell : entered) {
-    const std::int64_t here = cell.cell - static_cast<std::int64_t>(lattice.first_layer()) * cells_.in_layer();
-    if (here < cells_.first_own() || here >= cells_.last_own()) continue;
-    std::int32_t& drift = cells_.drift[static_cast<std::size_t>(here)];
+    const Cell at = lattice.cell_in_all(cell.cell);
+    if (cells_.slabs().owner(at.z) != communicator_->rank()) continue;
+    std::int32_t& drift = cells_.drift[lattice.number_of(at)];
     drift = std::max(drift, cell.drift);
   }
 }
@@ -178,7 +176,7 @@ Overlap TiledPacking::change(const std::vector<std::int64_t>& gone, const std::v
   const CellLattice& lattice = cells_.lattice();
   std::vector<Place> places;
   for (const Grain& grain : incoming) {
-    const Vector3 at = grain.position - lattice.low();
+    const Vector3 at = lattice.periodic().wrap(grain.position) - lattice.low();
     Point point = lattice.wrapped(at);
     point.state = grain.held ? Point::held : Point::falling;
     places.push_back(cells_.ensure_room(lattice.number_of(lattice.cell_at(at))));

@@ -54,8 +54,14 @@ bool CellRelaxation::share_out(std::int32_t parts, std::size_t workers) {
   cells_swept_.resize(cells.last_own() - cells.first_own());
   count_ = packing_.kernels().find_reached(cells.unrelaxed.data() + cells.first_own(), cells_swept_.size(), parts,
                                            cells_swept_.data());
-  if (packing_.communicator().sum(static_cast<std::int64_t>(count_)) == 0) return false;
   for (std::size_t k = 0; k < count_; ++k) cells_swept_[k] += cells.first_own();
+  if (cells.repeat()) {
+    const auto end = cells_swept_.begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto images =
+        std::remove_if(cells_swept_.begin(), end, [&](std::uint32_t cell) { return cells.is_image(cell); });
+    count_ = static_cast<std::size_t>(images - cells_swept_.begin());
+  }
+  if (packing_.communicator().sum(static_cast<std::int64_t>(count_)) == 0) return false;
   tasks_.resize(workers);
   for (std::size_t k = 0; k < workers; ++k) {
     tasks_[k].first = static_cast<std::uint32_t>(count_ * k / workers);

@@ -58,6 +58,7 @@ class BlockMoves {
   struct Part {
     int first_layer, last_layer;
     std::vector<CellRow> rows;             // of cells that moves may reach, move by move
+    std::vector<Point> shifts;             // of each row, to the image of the move that reaches it, if space repeats
     std::vector<std::size_t> end_of_rows;  // in `rows`, of each move
     std::vector<int> enclosed;             // volume of the grains here, by each move
     std::size_t counted;                   // the end of the moves whose lengths are in the drift of cells
@@ -72,6 +73,8 @@ class BlockMoves {
   };
 
   void set_parts(int workers);
+  void find_rows_of_images(Part& part, const Vector3& middle, double reach) const;
+  Point middle(const Part& part, std::size_t move, std::size_t row) const;
   void find(Part& part, const std::vector<Move>& moves, double radius);
   void add_drift(Part& part, std::size_t first, std::int32_t limit);
   void apply(Part& part, std::size_t first, std::size_t end, bool count);

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "spot/base/aligned_vector.hpp"
-#include "spot/packing/cell_lattice.hpp"
 #include "spot/packing/grain.hpp"
+#include "spot/packing/held_cells.hpp"
 #include "spot/packing/point.hpp"
-#include "spot/parallel/slabs.hpp"
 
 namespace spot {
 
@@ -28,57 +27,34 @@ class SlotData {
   virtual void renumber(const std::vector<std::uint32_t>& now, std::size_t slots) = 0;
 };
 
-enum Side { below, above };
-
 /// Grains in the cells of a lattice, with room in each cell for as many as it needs.
 ///
 /// Layout: every cell has consecutive *slots*, a multiple of kernels::pack, cell after cell, so that a row of cells is
 /// one contiguous range of slots. Empty slots hold points that are in nobody's reach. A grain is in the cell of its
 /// *reference* (Verlet reference position), the place where it was listed last.
 ///
-/// A rank owns the grains listed in its own layers; of the layer next to them on each side, the ghost layer, it holds
-/// copies.
-class Cells {
+/// Of the grains in ghost layers and images there are copies.
+class Cells : public HeldCells {
  public:
-  explicit Cells(const CellLattice& lattice) : lattice_(lattice) {}
+  using HeldCells::HeldCells;
   Cells(const Cells&) = delete;
   Cells& operator=(const Cells&) = delete;
-
-  CellLattice& lattice() { return lattice_; }
-  const CellLattice& lattice() const { return lattice_; }
 
   /// Empties all cells, of the layers that a rank then owns or has ghosts of. Throws InvalidPacking if there are too
   /// many.
   void hold(const Slabs& slabs, int rank);
-  const Slabs& slabs() const { return slabs_; }
   /// `data` follows the slots for as long as these cells exist.
   void attach(SlotData& data) { attached_.push_back(&data); }
-
-  // Layers and cells, by their numbers among those held.
-  int rank() const { return rank_; }
-  int own_layers() const { return slabs_.first(rank_ + 1) - slabs_.first(rank_); }
-  int first_own_layer() const { return slabs_.first(rank_); }
-  bool has_ghosts(Side side) const { return ghost_layers_[side] != 0; }
-  /// The first cell of the own layer next to a ghost layer, and of that ghost layer.
-  std::uint32_t first_of_border(Side side) const;
-  std::uint32_t first_of_ghosts(Side side) const { return side == below ? 0 : last_own(); }
-  std::uint32_t count() const { return lattice_.cells_held(); }
-  std::uint32_t first_own() const { return static_cast<std::uint32_t>(ghost_layers_[below]) * in_layer(); }
-  std::uint32_t last_own() const { return first_own() + static_cast<std::uint32_t>(own_layers()) * in_layer(); }
-  std::uint32_t in_layer() const { return lattice_.cells_in_layer(); }
-  bool own(std::uint32_t cell) const { return cell >= first_own() && cell < last_own(); }
-  /// Among the own layers.
-  std::size_t layer_of(std::uint32_t cell) const { return (cell - first_own()) / in_layer(); }
 
   // Sizes. Equal grains, all of the lattice's diameter, keep none.
   /// Grains are unequal from now on, all that are there being of the largest size.
   void allow_unequal();
   bool unequal() const { return unequal_; }
   void set_radius(std::uint32_t slot, double radius);
-  double radius(std::uint32_t slot) const { return unequal_ ? sizes[slot].radius : 0.5 * lattice_.diameter(); }
+  double radius(std::uint32_t slot) const { return unequal_ ? sizes[slot].radius : 0.5 * lattice().diameter(); }
   /// Of the centres of two grains that touch, in quanta.
   double touching_distance(std::uint32_t a, std::uint32_t b) const {
-    return (radius(a) + radius(b)) / lattice_.quantum().length();
+    return (radius(a) + radius(b)) / lattice().quantum().length();
   }
 
   // Slots.
@@ -97,12 +73,18 @@ class Cells {
   }
   template <typename Visit>
   void visit_own(const Visit& visit) const {
-    this->visit(first_own(), last_own(), visit);
+    this->visit(first_own(), last_own(), [&](std::uint32_t slot) {
+      if (!is_image(cell_of(slot))) visit(slot);
+    });
   }
   template <typename Visit>
   void visit_ghosts(const Visit& visit) const {
     this->visit(0, first_own(), visit);
     this->visit(last_own(), count(), visit);
+    if (!repeat()) return;
+    this->visit(first_own(), last_own(), [&](std::uint32_t slot) {
+      if (is_image(cell_of(slot))) visit(slot);
+    });
   }
 
   /// An empty place in a cell; if there is none, slots are numbered anew. Throws InvalidPacking if there are too many.
@@ -115,13 +97,15 @@ class Cells {
   void note_change(std::uint32_t slot);
   /// Places in own border layers in which something has changed since they were taken last.
   std::vector<Place> take_changes(Side side) { return std::exchange(changed_[side], {}); }
+  /// The same in any cells that there may be images of.
+  std::vector<Place> take_changes_seen_in_images() { return std::exchange(changed_in_images_, {}); }
 
   /// Grains owned.
   std::size_t size() const { return size_; }
   Vector3 from_low(const Point& point, std::uint32_t cell) const {
-    return lattice_.from_low(point, lattice_.cell(cell));
+    return lattice().from_low(point, lattice().cell(cell));
   }
-  Vector3 position(std::uint32_t slot) const { return lattice_.low() + from_low(points[slot], cell_of_[slot]); }
+  Vector3 position(std::uint32_t slot) const { return lattice().low() + from_low(points[slot], cell_of_[slot]); }
   Grain grain(std::uint32_t slot) const;
   std::vector<std::int64_t> grains_in_own_layers() const;
   std::size_t memory() const;
@@ -143,14 +127,11 @@ class Cells {
   void give_room(std::uint32_t cell);
   GrainSize size_of(double radius) const;
 
-  CellLattice lattice_;
-  Slabs slabs_{std::vector<std::int64_t>{0}, 1};
-  int rank_ = 0;
-  std::array<int, 2> ghost_layers_ = {0, 0};     // held of the ranks below and above: 0 or 1
   std::vector<std::uint32_t> first_slot_ = {0};  // of each cell, and the end of the last
   std::vector<std::uint32_t> cell_of_;           // of each slot
   std::vector<SlotData*> attached_;
   std::array<std::vector<Place>, 2> changed_;
+  std::vector<Place> changed_in_images_;
   std::size_t size_ = 0;
   bool unequal_ = false;
 };

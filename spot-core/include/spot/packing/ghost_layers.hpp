@@ -14,7 +14,8 @@
 namespace spot {
 
 /// What ranks with neighbouring layers tell each other: grains that go over to the other, what changes in the layers of
-/// which the other has copies, how many moves their cells have received, and where their grains are.
+/// which the other has copies, how many moves their cells have received, and where their grains are. And what a rank
+/// tells itself where space repeats: the same of the cells that it holds images of.
 class GhostLayers {
  public:
   GhostLayers(Cells& cells, NeighbourLists& lists, std::shared_ptr<Communicator> communicator);
@@ -35,6 +36,9 @@ class GhostLayers {
   void send_positions_of_unrelaxed(std::int32_t parts) { choose(parts); }
 
  private:
+  void exchange_layers(const Container& container);
+  void update_images(const Container& container);
+  void copy_to_image(std::uint32_t source, std::uint32_t image);
   void choose(std::int32_t parts);
   template <typename Visit>
   void visit_sent(std::uint32_t first_cell, const Visit& visit) const;

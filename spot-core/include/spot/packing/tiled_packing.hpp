@@ -79,6 +79,9 @@ class TiledPacking {
   /// Marks the grains near walls anew, as after the walls changed.
   void mark_near_walls(const Container& container) { walls_.mark_all(container); }
 
+  /// Throws InvalidContainer if space repeats otherwise there than here.
+  void require_same_periods(const Container& container) const;
+
   /// Collective. Takes out the grains with these ids, which are this rank's, and brings in others, of which each rank
   /// brings some; a grain that has moved is one that goes and one that comes. Those that come fall, as Settling finds
   /// them. All others keep what is remembered of them. Throws InvalidPacking, and is of no use any more, if a grain is
@@ -117,7 +120,7 @@ class TiledPacking {
   std::vector<Place>& unsupported() { return unsupported_; }
 
  private:
-  TiledPacking(double diameter, double extent, std::shared_ptr<Communicator> communicator);
+  TiledPacking(double diameter, double extent, const Periodic& periodic, std::shared_ptr<Communicator> communicator);
   void set_slabs(const Slabs& slabs);
   bool some_are_smaller(const std::vector<Grain>& grains);
   std::vector<Grain> take_own(const std::vector<Grain>& grains) const;

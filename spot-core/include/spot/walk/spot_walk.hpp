@@ -25,7 +25,7 @@ struct Spot {
 ///
 /// A spot is born uniformly on the disc of the orifice's radius less R_s, and R_s below the orifice: it
 /// enters the packing with its whole influence, so that as much leaves through the orifice as the spot
-/// brings down through any height above (volume closes; see ARCHITECTURE.md).
+/// brings down through any height above (volume closes; see docs/notes).
 class SpotWalk {
  public:
   /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
