@@ -136,7 +136,7 @@ spot::SpotParameters spot_parameters() {
 }
 
 std::shared_ptr<const spot::Container> silo() {
-  return spot::box_silo(-25.0, 25.0, -4.0, 4.0, {{0.0, 0.0, 0.0}, 4.0}, {0.25, 2.0});
+  return spot::box_silo(-25.0, 25.0, -4.0, 4.0, spot::Orifice{{0.0, 0.0, 0.0}, 4.0}, {0.25, 2.0});
 }
 
 template <typename Start>
@@ -163,7 +163,7 @@ double birth_time() {
   double time = 0.0, height = 0.0;
   for (int birth = 0; birth < births; ++birth) {
     height += walk.birth(birth, time, *container).position.z();
-    time += walk.time_before_birth(birth);
+    time = walk.time_of_birth(birth, time);
   }
   return height < 0.0 ? (processor_time() - start) / births : 0.0;
 }

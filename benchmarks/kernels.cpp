@@ -231,7 +231,7 @@ void find_reached(benchmark::State& state, const Kernels& kernels) {
 
 struct Silo {
   std::shared_ptr<const spot::Container> container =
-      spot::box_silo(-25, 25, -4, 4, {Vector3::Zero(), 4.0}, spot::SpotBuffers{1.0, 1.0});
+      spot::box_silo(-25, 25, -4, 4, spot::Orifice{Vector3::Zero(), 4.0}, spot::SpotBuffers{1.0, 1.0});
   spot::Workers workers{1};
   spot::TiledPacking packing{1.0, 200.0, 0.0, grains(), *container};
 };

@@ -228,7 +228,7 @@ void FixSpot::choose_window() {
   double window = command.window.value_or(update->dt);
   if (!command.window && !*command.time_ordered) {
     const double flow =
-        spot::WindowedDrainage::flow_through_orifice(command.spots, 1.0, model->diameter, command.orifice->radius);
+        spot::WindowedDrainage::flow_through_orifice(command.spots, 1.0, model->diameter, *command.orifice);
     const double longest = std::min(calibration::climb_in_a_window * model->diameter / command.spots.speed,
                                     calibration::flow_in_a_window / flow);
     window = update->dt / std::ceil(update->dt / longest - 1e-9);

@@ -15,20 +15,20 @@ namespace LAMMPS_NS {
 
 RegionContainer::RegionContainer(Region *region, Domain &domain, const spot::Orifice &orifice,
                                  const spot::SpotBuffers &buffers)
-    : BodyContainer(orifice, buffers), region_(region), parts_(region, domain, orifice) {
+    : BodyContainer(orifice, buffers), region_(region), orifice_(orifice), parts_(region, domain, orifice) {
   region_->prematch();
   require_mouth();
 }
 
 bool RegionContainer::contains(const Vector3 &c) const {
-  if (c.z() < orifice().centre.z()) return false;
+  if (c.z() < orifice_.centre.z()) return false;
   // Region::match() would say that everything is inside a region with an open face.
   return (region_->inside(c.x(), c.y(), c.z()) != 0) == (region_->interior != 0);
 }
 
 void RegionContainer::contacts(const Vector3 &c, double reach, spot::WallContacts &contacts) const {
   contacts.clear();
-  if (c.z() < orifice().centre.z()) return;
+  if (c.z() < orifice_.centre.z()) return;
   Vector3 place = c;
   for (int attempt = 0; attempt < 2; ++attempt) {
     const int n = region_->surface(place.x(), place.y(), place.z(), reach);
@@ -76,7 +76,7 @@ std::optional<spot::WallContact> RegionContainer::nearest_wall(const Vector3 &pl
 }
 
 /// Where the region is asked from: its base may be off the height of the orifice by rounding.
-double RegionContainer::entrance_height() const { return orifice().centre.z() + 1e-6 * orifice().radius; }
+double RegionContainer::entrance_height() const { return orifice_.centre.z() + 1e-6 * orifice_.radius; }
 
 std::optional<spot::WallOnPath> RegionContainer::first_wall_above(const Vector3 &from, const Vector3 &to) const {
   const auto raised = [&](const Vector3 &at) { return Vector3(at.x(), at.y(), std::max(at.z(), entrance_height())); };
@@ -89,7 +89,7 @@ std::optional<spot::WallOnPath> RegionContainer::first_wall_above(const Vector3 
 
 /// Of a place just above the height of the orifice.
 bool RegionContainer::opens_below(const Vector3 &place) const {
-  const double height = place.z() - orifice().centre.z();
+  const double height = place.z() - orifice_.centre.z();
   const Vector3 below = place - Vector3(0.0, 0.0, 2.0 * height);
   if ((region_->inside(below.x(), below.y(), below.z()) != 0) == (region_->interior != 0))
     return !parts_.first_wall(place, below);
@@ -97,10 +97,10 @@ bool RegionContainer::opens_below(const Vector3 &place) const {
 }
 
 void RegionContainer::require_mouth() const {
-  const double radius = orifice().radius;
+  const double radius = orifice_.radius;
   const auto place = [&](double share, int turn) {  // turn: 1/64 of a whole one
     const double angle = 2.0 * 3.14159265358979323846 / 64.0 * turn, r = share * radius;
-    return Vector3(orifice().centre.x() + r * std::cos(angle), orifice().centre.y() + r * std::sin(angle),
+    return Vector3(orifice_.centre.x() + r * std::cos(angle), orifice_.centre.y() + r * std::sin(angle),
                    entrance_height());
   };
   int outside = 0, walled = 0, open = 0;
@@ -120,14 +120,14 @@ void RegionContainer::require_mouth() const {
       }
       if (!closed) closed = at;
     }
-  const Vector3 &c = orifice().centre;
+  const Vector3 &c = orifice_.centre;
   const std::string orifice =
       spot::message("the orifice of radius ", radius, " at (", c.x(), ", ", c.y(), ", ", c.z(), ")");
   const std::string region = spot::message("region '", region_->id, "'");
   if (open == 0 && walled == 0) throw spot::InvalidContainer(orifice + " is outside " + region);
   if (open == 0)
     throw spot::InvalidContainer(spot::message("a wall of ", region, " lies across ", orifice,
-                                               ": open the region there, ", way_to_write_mouth(this->orifice())));
+                                               ": open the region there, ", way_to_write_mouth(orifice_)));
   if (closed)
     throw spot::InvalidContainer(spot::message(orifice, " reaches beyond the mouth of ", region, ": at (", closed->x(),
                                                ", ", closed->y(), ", ", closed->z(), ") there is a wall"));

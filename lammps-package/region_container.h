@@ -35,6 +35,7 @@ class RegionContainer : public spot::BodyContainer {
   void require_mouth() const;
 
   Region *region_;
+  spot::Orifice orifice_;
   RegionParts parts_;
 };
 

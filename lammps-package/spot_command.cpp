@@ -237,7 +237,7 @@ SpotCommand parse_spot_command(const std::vector<std::string>& list) {
           "walls are needed, by 'box xlo xhi ylo yhi', 'cylinder x y radius' or 'region ID'");
   require(command.orifice.has_value(), "orifice", "'orifice x y z radius' says where grains leave and spots enter");
   require(command.spots.speed > 0.0, "speed", "the drift speed of spots");
-  require(command.spots.injection_rate > 0.0, "injection",
+  require(command.spots.injection_rate.largest() > 0.0, "injection",
           "spots born per time; outflow / (influence * grains a spot)");
   return command;
 }
@@ -309,7 +309,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"persistence", precise(spots.persistence)},
           {"speed", precise(spots.speed)},
           {"dilation", precise(spots.dilation)},
-          {"injection", precise(spots.injection_rate)},
+          {"injection", precise(spots.injection_rate.largest())},
           {"volume", precise(spots.fixed_volume)},
           {"steps", spots.together ? "together" : "poisson"},
           {"seed", precise(spots.seed)},

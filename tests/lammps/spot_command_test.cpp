@@ -63,7 +63,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.spots.persistence, 0.4);
   EXPECT_EQ(c.spots.dilation, 0.03);
   EXPECT_EQ(c.spots.speed, 2.0);
-  EXPECT_EQ(c.spots.injection_rate, 300.0);
+  EXPECT_EQ(c.spots.injection_rate.largest(), 300.0);
   EXPECT_EQ(c.spots.seed, 17U);
   EXPECT_EQ(c.outlet, -1.5);
   EXPECT_EQ(c.side_buffer, 0.5);
@@ -307,7 +307,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
       SpotCommand command = parse_spot_command(words);
       ++read;
       EXPECT_GT(command.spots.speed, 0.0);
-      EXPECT_GT(command.spots.injection_rate, 0.0);
+      EXPECT_GT(command.spots.injection_rate.largest(), 0.0);
       EXPECT_GE(command.average, 1);
       EXPECT_TRUE(command.orifice.has_value());
       EXPECT_GE(command.threads, 1);

@@ -12,6 +12,7 @@
 #include "spot/geometry/base_plate.hpp"
 #include "spot/geometry/cylinder_wall.hpp"
 #include "spot/geometry/plane_wall.hpp"
+#include "spot/geometry/round_hole.hpp"
 #include "spot/geometry/silos.hpp"
 
 namespace {
@@ -130,12 +131,11 @@ TEST(ContainerAnalytic, PlaneReflectsSpotsAtTheirBuffer) {
   EXPECT_EQ(wall.reflect_spot(1.0, {5.0, 2.0, 2.0}), Vector3(5.0, 2.0, 2.0)) << "far away";
 }
 
-TEST(ContainerAnalytic, OrificeKeepsWithinByReflection) {
-  const Orifice shifted{{1.0, 2.0, 3.0}, 4.0};
-  EXPECT_EQ(shifted.keep_within(1.5, {2.0, 2.0, 9.0}), Vector3(2.0, 2.0, 9.0));
-  EXPECT_LT((shifted.keep_within(1.5, {3.0, 2.0, 9.0}) - Vector3(2.0, 2.0, 9.0)).norm(), 1e-14);
-  EXPECT_LT((shifted.keep_within(1.5, {9.0, 2.0, 9.0}) - Vector3(1.0, 2.0, 9.0)).norm(), 1e-14)
-      << "never past the axis";
+TEST(ContainerAnalytic, RoundHolesKeepInsideByReflection) {
+  const spot::RoundHole hole(4.0);
+  EXPECT_EQ(hole.keep_inside(2.5, {1.0, 0.0, 6.0}), Vector3(1.0, 0.0, 6.0));
+  EXPECT_LT((hole.keep_inside(2.5, {2.0, 0.0, 6.0}) - Vector3(1.0, 0.0, 6.0)).norm(), 1e-14);
+  EXPECT_LT((hole.keep_inside(2.5, {8.0, 0.0, 6.0}) - Vector3(0.0, 0.0, 6.0)).norm(), 1e-14) << "never past the axis";
 }
 
 TEST(ContainerAnalytic, BasePlateKeepsRisingSpotsAwayFromTheRimAtConstantHeight) {
@@ -345,10 +345,11 @@ TEST(ContainerUnit, ContainersHaveNoAxisPlanesUnlessTheySaySo) {
       contacts.clear();
       contacts.add({centre.z(), {0.0, 0.0, 1.0}});
     }
-    const Orifice& orifice() const override { return ::orifice; }
+    const spot::Outlets& outlets() const override { return outlets_; }
     std::optional<WallOnPath> first_wall(const Vector3&, const Vector3&) const override { return std::nullopt; }
 
    private:
+    spot::Outlets outlets_ = ::orifice;
     std::optional<Vector3> reflect_spot(const Vector3&, const Vector3& target) const override { return target; }
   } bowl;
   EXPECT_TRUE(bowl.axis_planes().empty());
@@ -397,7 +398,7 @@ TEST(ContainerUnit, BadShapesAreNamed) {
     EXPECT_THAT(scenes::text_of<InvalidContainer>([&] {
                   WalledContainer(Orifice{{0.0, 0.0, 0.0}, bad});
                 }),
-                AllOf(HasSubstr("orifice radius"), HasSubstr("positive and finite")));
+                AllOf(HasSubstr("radius of the orifice"), HasSubstr("positive and finite")));
   }
   EXPECT_THROW(PlaneWall({0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}), InvalidContainer);
   EXPECT_THROW(PlaneWall({0.0, 0.0, std::nan("")}, {0.0, 0.0, 1.0}), InvalidContainer);

@@ -80,7 +80,7 @@ TEST(DilationFieldBruteForce, EqualsTheSumOverAllSpots) {
   DilationField field(spots, *space, 1.0);
   field.count(places, alone);
   const auto hat = [](double a, double b) { return std::max(0.0, 1.0 - std::abs(a - b)); };
-  const Vector3 origin = space->orifice().centre;
+  const Vector3 origin = space->outlets()[0].centre;
   for (int k = 0; k < 100; ++k) {
     const Vector3 at = draws.in_box({-13, -10, -8}, {12, 12, 15}), u = (at - origin) / spots.radius;
     double sum = 0.0;

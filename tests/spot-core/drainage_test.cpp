@@ -133,7 +133,7 @@ class PlainDrainage {
       ++moved;
     }
     if (moved == 0) {
-      if (move.middle.z() > container_->orifice().centre.z() + spots_.radius) population_.remove(move.spot);
+      if (move.middle.z() > container_->outlets().height() + spots_.radius) population_.remove(move.spot);
       return;
     }
     ++effective_moves_;
@@ -374,7 +374,7 @@ TEST(DrainageInvariance, UnitsChangeOnlyTheLastDigits) {
   spots.step_width *= d;
   spots.step_height *= d;
   spots.speed *= d / tau;
-  spots.injection_rate /= tau;
+  spots.injection_rate = spots.injection_rate.largest() / tau;
   const spot::Orifice orifice{{0.0, 0.0, 0.0}, 4.0 * d};
   TimeOrderedDrainage metric(spots, {}, DrainageLimits{-d},
                              spot::box_silo(-6.0 * d, 6.0 * d, -4.0 * d, 4.0 * d, orifice, {d, spots.radius}),
@@ -557,7 +557,8 @@ TEST(DrainageUnit, GrainsThatWereDrivenOutOfTheContainerAreNamed) {
 }
 
 /// The text of the error of a drainage with paper's spots, one number of them changed.
-std::string refusal_of(double SpotParameters::*number, double value) {
+template <typename Number>
+std::string refusal_of(Number SpotParameters::*number, double value) {
   SpotParameters spots = scenes::paper_spots();
   spots.*number = value;
   return scenes::text_of<InvalidParameter>([&] { drainage_of({{1, {0.0, 0.0, 1.0}}}, spots); });

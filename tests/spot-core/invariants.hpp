@@ -84,7 +84,6 @@ class Ledger {
 
  private:
   std::string check_drained(spot::Drainage& drainage) {
-    const spot::Orifice& orifice = container_.orifice();
     for (const spot::Grain& grain : drainage.take_drained()) {
       const auto found = start_.find(grain.id);
       if (found == start_.end()) return spot::message("grain ", grain.id, " drained but was never there");
@@ -92,11 +91,15 @@ class Ledger {
       if (!drained_.insert(grain.id).second) return spot::message("grain ", grain.id, " drained twice");
       if (!grain.position.allFinite() || grain.position.z() >= limits_.outlet)
         return spot::message("grain ", grain.id, " drained at z = ", grain.position.z());
-      // Below the hole grains spread no farther than they have come down.
-      const double from_axis =
-          container_.periodic().nearest(spot::Vector3(grain.position - orifice.centre)).head<2>().norm();
-      if (guards_base_ && from_axis > orifice.radius + orifice.centre.z() - grain.position.z())
-        return spot::message("grain ", grain.id, " went through the base, ", from_axis, " from the axis");
+      // Below a hole grains spread no farther than they have come down.
+      const spot::Outlets& outlets = container_.outlets();
+      const bool left = std::any_of(outlets.begin(), outlets.end(), [&](const spot::Outlet& outlet) {
+        const spot::Vector3 from_centre = container_.periodic().nearest(spot::Vector3(grain.position - outlet.centre));
+        return outlet.distance(outlet.centre + from_centre) <= outlets.height() - grain.position.z();
+      });
+      if (guards_base_ && !left)
+        return spot::message("grain ", grain.id, " went through the base at (", grain.position.x(), ", ",
+                             grain.position.y(), ")");
     }
     return {};
   }

@@ -42,13 +42,21 @@ INSTANTIATE_TEST_SUITE_P(EachNumber, SpotParametersUnit,
                                          Number{"spot influence", &SpotParameters::influence},
                                          Number{"spot step width", &SpotParameters::step_width},
                                          Number{"spot step height", &SpotParameters::step_height},
-                                         Number{"spot speed", &SpotParameters::speed},
-                                         Number{"spot injection rate", &SpotParameters::injection_rate}),
+                                         Number{"spot speed", &SpotParameters::speed}),
                          [](const auto& number) {
                            std::string name = number.param.word;
                            name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
                            return name;
                          });
+
+TEST(ParametersUnit, ARateOfInjectionThatIsNoneIsNamed) {
+  for (const double bad : {0.0, -1.5, infinity, -infinity, std::nan("")}) {
+    SpotParameters spots = scenes::paper_spots();
+    spots.injection_rate = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }),
+                AllOf(HasSubstr("spot injection rate is "), HasSubstr("must be positive and finite")));
+  }
+}
 
 TEST(ParametersUnit, ThoseOf2006AreValid) {
   EXPECT_NO_THROW(scenes::paper_spots().validate());

@@ -51,14 +51,14 @@ class RandomScene {
   /// All that was drawn, lengths in diameters, for whoever has to find out what went wrong.
   std::string description() const {
     const double d = diameter_;
-    return spot::message("scene ", seed_, ": ", kind_, ", ", grains_.size(), " grains, d = ", d, ", orifice ",
-                         silo_->orifice().radius / d, ", R_s = ", spots_.radius / d, ", w = ", spots_.influence,
-                         ", dx = ", spots_.step_width / d, ", dz = ", spots_.step_height / d,
-                         ", nu_s = ", spots_.injection_rate, ", volume ", spots_.fixed_volume, ", dilation ",
-                         spots_.dilation, spots_.together ? ", together" : "", ", alpha ", relaxation_.alpha,
-                         ", momentum ", relaxation_.momentum, ", tolerance ", relaxation_.tolerance, ", contact ",
-                         relaxation_.contact_overlap, ", ", windows_, " windows of ", window_,
-                         time_ordered_ ? ", time-ordered, every " : ", windowed, every ", relaxation_.every);
+    return spot::message(
+        "scene ", seed_, ": ", kind_, ", ", grains_.size(), " grains, d = ", d, ", orifice ",
+        silo_->outlets()[0].hole->widest_radius() / d, ", R_s = ", spots_.radius / d, ", w = ", spots_.influence,
+        ", dx = ", spots_.step_width / d, ", dz = ", spots_.step_height / d, ", nu_s = ", spots_.injection_rate.largest(),
+        ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation, spots_.together ? ", together" : "",
+        ", alpha ", relaxation_.alpha, ", momentum ", relaxation_.momentum, ", tolerance ", relaxation_.tolerance,
+        ", contact ", relaxation_.contact_overlap, ", ", windows_, " windows of ", window_,
+        time_ordered_ ? ", time-ordered, every " : ", windowed, every ", relaxation_.every);
   }
 
  private:
@@ -178,8 +178,8 @@ class RandomScene {
     // Grains in the orifice go some way in a window, at most a diameter.
     const double clock = spots_.together ? std::max(window_, spots_.mean_waiting_time()) : window_;
     const double carried = spots_.fixed_volume > 0.0 ? spots_.fixed_volume * spots_.influence : volume;
-    const double orifice = silo_->orifice().radius / diameter_;
-    const double flow = clock * spots_.injection_rate * carried / (3.5 * orifice * orifice);
+    const double orifice = silo_->outlets()[0].hole->widest_radius() / diameter_;
+    const double flow = clock * spots_.injection_rate.largest() * carried / (3.5 * orifice * orifice);
     spots_.injection_rate *= std::min(1.0, 0.9 / flow);
   }
 

@@ -129,8 +129,8 @@ TEST(SpotsUnit, SpotsStepTogether) {
   }
   EXPECT_EQ(now, 96);
   EXPECT_EQ(static_cast<std::int64_t>(last.size()), population.born());
-  EXPECT_NEAR(static_cast<double>(population.born()), 3.0 * parameters.injection_rate,
-              bound * std::sqrt(3.0 * parameters.injection_rate));
+  EXPECT_NEAR(static_cast<double>(population.born()), 3.0 * parameters.injection_rate.largest(),
+              bound * std::sqrt(3.0 * parameters.injection_rate.largest()));
 }
 
 /// Births and directions are the same as of spots that step by themselves.
@@ -301,7 +301,7 @@ TEST(SpotsStatistical, BirthsAreAPoissonProcess) {
   const SpotParameters parameters = scenes::paper_spots();
   Spots population(parameters, *space, 1.0);
   const int intervals = 4000;
-  const double length = 10.0 / parameters.injection_rate;  // ten births expected in each
+  const double length = 10.0 / parameters.injection_rate.largest();  // ten births expected in each
   double sum = 0.0, sum_of_squares = 0.0;
   std::int64_t before = 0;
   for (int k = 1; k <= intervals; ++k) {
@@ -412,7 +412,7 @@ TEST(SpotsStatistical, DilatedPackingsCarrySpotsFaster) {
     }
     const double volume = parameters.missing_volume(1.0), area = 4.0 * half * half;
     const double c = sum / looks * volume / (area * (high - low));
-    const double flux = parameters.injection_rate * volume / area;
+    const double flux = parameters.injection_rate.largest() * volume / area;
     const double expected = c_0 > 0.0 ? std::cbrt(flux * c_0 * c_0 / parameters.speed) : flux / parameters.speed;
     // Half a per cent is what the births of 20 tau scatter by; counting noise makes spots a little faster.
     EXPECT_NEAR(c / expected, 1.0, 0.04) << c_0;
@@ -461,7 +461,7 @@ INSTANTIATE_TEST_SUITE_P(Persistence, SpotsBetweenWallsStatistical, testing::Val
 
 TEST(SpotsAnalytic, RisingSpotsKeepTheirRadiusFromBaseAndRim) {
   const auto silo = scenes::small_silo(8.0, 4.0);
-  const spot::BasePlate plate(silo->orifice());
+  const spot::BasePlate plate(silo->outlets());
   walk(scenes::paper_spots(), *silo, 500, 80, [&](const Move& move, int) {
     const Vector3 end = end_of(move);
     if (end.z() <= 0.0) {

@@ -72,7 +72,7 @@ class PlainWindows {
         silo_(scenes::small_silo(6.0, 4.0)),
         walk_(spots, *silo_),
         packing_(1.0, 100.0, outlet, grains, *silo_),
-        next_birth_(walk_.time_before_birth(0)) {}
+        next_birth_(walk_.time_of_birth(0, 0.0)) {}
 
   void advance_by_a_window() {
     const double now = windows_ * window_, until = ++windows_ * window_;
@@ -86,7 +86,7 @@ class PlainWindows {
       if (spots_.dilation > 0.0) walk_.set_relative_speed(spot, time, field.relative_speed(spot.position));
     };
     for (Live& live : live_) set_speed(live.spot, now);
-    for (; next_birth_ <= until; next_birth_ += walk_.time_before_birth(++born_)) {
+    for (; next_birth_ <= until; next_birth_ = walk_.time_of_birth(++born_, next_birth_)) {
       live_.push_back({walk_.birth(born_, next_birth_, *silo_), false});
       set_speed(live_.back().spot, next_birth_);
     }
@@ -234,7 +234,7 @@ class OneAtATime : public spot::Container {
     walls_->contacts(centre, reach, contacts);
   }
   bool concurrent() const override { return false; }
-  const spot::Orifice& orifice() const override { return walls_->orifice(); }
+  const spot::Outlets& outlets() const override { return walls_->outlets(); }
   std::optional<spot::WallOnPath> first_wall(const spot::Vector3& from, const spot::Vector3& to) const override {
     return walls_->first_wall(from, to);
   }

@@ -50,7 +50,7 @@ void add_parameters(std::vector<Case>& cases) {
   add_values(cases, "w / 2.5e-3", {0.01, 1, 2, 5, 10, 20, 50, 100}, [](Scene& s, double v) { s.spots.influence *= v; });
   add_values(cases, "w / 2.5e-3, births fewer by as much", {0.1, 2, 5, 10, 20, 50, 100}, [](Scene& s, double v) {
     s.spots.influence *= v;
-    s.spots.injection_rate /= v;
+    s.spots.injection_rate = s.spots.injection_rate.largest() / v;
   });
   add_values(cases, "R_s / d", {0.6, 1, 1.5, 2, 3, 4, 5, 6}, [](Scene& s, double v) { s.set_radius(v); });
   add_values(cases, "dz / d", {0.005, 0.02, 0.05, 0.1, 0.2, 0.5, 1.2, 2.4},
@@ -163,31 +163,31 @@ void add_packings(std::vector<Case>& cases) {
 
 /// Numbers that are none, or hardly any, for every parameter.
 void add_odd_numbers(std::vector<Case>& cases) {
-  const std::vector<std::pair<std::string, std::function<double&(Scene&)>>> parameters = {
-      {"R_s", [](Scene& s) -> double& { return s.spots.radius; }},
-      {"w", [](Scene& s) -> double& { return s.spots.influence; }},
-      {"dx", [](Scene& s) -> double& { return s.spots.step_width; }},
-      {"dz", [](Scene& s) -> double& { return s.spots.step_height; }},
-      {"v_s", [](Scene& s) -> double& { return s.spots.speed; }},
-      {"c_0", [](Scene& s) -> double& { return s.spots.dilation; }},
-      {"nu_s", [](Scene& s) -> double& { return s.spots.injection_rate; }},
-      {"volume", [](Scene& s) -> double& { return s.spots.fixed_volume; }},
-      {"alpha", [](Scene& s) -> double& { return s.relaxation.alpha; }},
-      {"momentum", [](Scene& s) -> double& { return s.relaxation.momentum; }},
-      {"contact", [](Scene& s) -> double& { return s.relaxation.contact_overlap; }},
-      {"tolerance", [](Scene& s) -> double& { return s.relaxation.tolerance; }},
-      {"window", [](Scene& s) -> double& { return s.window; }},
-      {"overlap", [](Scene& s) -> double& { return s.largest_overlap; }},
-      {"d", [](Scene& s) -> double& { return s.diameter; }},
-      {"orifice", [](Scene& s) -> double& { return s.orifice; }},
-      {"buffer", [](Scene& s) -> double& { return s.buffers.side; }},
-      {"z of a grain", [](Scene& s) -> double& { return s.grains[40].position.z(); }}};
+  const std::vector<std::pair<std::string, std::function<void(Scene&, double)>>> parameters = {
+      {"R_s", [](Scene& s, double v) { s.spots.radius = v; }},
+      {"w", [](Scene& s, double v) { s.spots.influence = v; }},
+      {"dx", [](Scene& s, double v) { s.spots.step_width = v; }},
+      {"dz", [](Scene& s, double v) { s.spots.step_height = v; }},
+      {"v_s", [](Scene& s, double v) { s.spots.speed = v; }},
+      {"c_0", [](Scene& s, double v) { s.spots.dilation = v; }},
+      {"nu_s", [](Scene& s, double v) { s.spots.injection_rate = v; }},
+      {"volume", [](Scene& s, double v) { s.spots.fixed_volume = v; }},
+      {"alpha", [](Scene& s, double v) { s.relaxation.alpha = v; }},
+      {"momentum", [](Scene& s, double v) { s.relaxation.momentum = v; }},
+      {"contact", [](Scene& s, double v) { s.relaxation.contact_overlap = v; }},
+      {"tolerance", [](Scene& s, double v) { s.relaxation.tolerance = v; }},
+      {"window", [](Scene& s, double v) { s.window = v; }},
+      {"overlap", [](Scene& s, double v) { s.largest_overlap = v; }},
+      {"d", [](Scene& s, double v) { s.diameter = v; }},
+      {"orifice", [](Scene& s, double v) { s.orifice = v; }},
+      {"buffer", [](Scene& s, double v) { s.buffers.side = v; }},
+      {"z of a grain", [](Scene& s, double v) { s.grains[40].position.z() = v; }}};
   const double denormal = std::numeric_limits<double>::denorm_min(), infinite = std::numeric_limits<double>::infinity();
   for (const auto& [name, number] : parameters)
     for (const double value : {denormal, 1e-310, 1e308, infinite, -infinite, std::nan(""), -1.0, -0.0}) {
       Scene scene;
       scene.time = 0.5;
-      number(scene) = value;
+      number(scene, value);
       cases.push_back({name, spot::message(value), scene, true});
     }
 }
@@ -210,11 +210,12 @@ void add_combinations(std::vector<Case>& cases, int number) {
     scene.relaxation.tolerance = log_uniform(1e-4, 0.1);
     // Births and steps grow with time; no more moves than take a second.
     const double moves = scene.time_ordered ? 2e4 : 4e5;
-    scene.time = std::min(4.0, std::sqrt(2.0 * moves / (scene.spots.injection_rate * scene.spots.move_rate())));
+    scene.time =
+        std::min(4.0, std::sqrt(2.0 * moves / (scene.spots.injection_rate.largest() * scene.spots.move_rate())));
     cases.push_back({"all at once",
                      spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ",
                                    scene.spots.radius, ", dz ", scene.spots.step_height, ", nu_s ",
-                                   scene.spots.injection_rate, ", c_0 ", scene.spots.dilation, ", momentum ",
+                                   scene.spots.injection_rate.largest(), ", c_0 ", scene.spots.dilation, ", momentum ",
                                    scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
                      scene, true});
   }

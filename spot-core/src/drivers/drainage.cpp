@@ -33,9 +33,9 @@ void require_steps(const SpotParameters& spots, double diameter) {
   if (!(spots.step_height >= shortest_step * diameter))
     throw InvalidParameter(message("spot step height is ", spots.step_height / diameter,
                                    " diameters but must be at least ", shortest_step));
-  const double births = spots.injection_rate * (diameter / spots.speed);
+  const double births = spots.injection_rate.largest() * (diameter / spots.speed);
   if (!(births <= most_births))
-    throw InvalidParameter(message("spot injection rate is ", spots.injection_rate, ": ", births,
+    throw InvalidParameter(message("spot injection rate is ", spots.injection_rate.largest(), ": ", births,
                                    " births while a spot climbs one diameter, but at most ", most_births,
                                    " are allowed"));
   const double step = std::sqrt(spots.step_width * spots.step_width + spots.step_height * spots.step_height);
@@ -61,7 +61,7 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
   container_->require_entrance(spots.equivalent_radius());
   container_->periodic().require_length(2.0 * (spots.radius + 2.0 * diameter),
                                         "twice the spot radius and two diameters, so that no spot meets itself");
-  const double base = container_->orifice().centre.z();
+  const double base = container_->outlets().height();
   // A newborn spot is 2 R_s tall, and the middle of its first step is half a step higher.
   const double lowest_reached = base - 2.0 * spots.radius + 0.5 * spots.step_height;
   if (!(limits.outlet > lowest_reached && limits.outlet <= base))
@@ -99,6 +99,9 @@ void Drainage::require_inside() const {
 }
 
 void Drainage::replace_container(std::shared_ptr<const Container> container) {
+  if (container->outlets().size() != container_->outlets().size())
+    throw InvalidContainer(message("a container with ", container->outlets().size(),
+                                   " outlets cannot take the place of one with ", container_->outlets().size()));
   container_ = std::move(container);
   checks_.replace_container(container_);
   take_new_container();

@@ -21,13 +21,12 @@ GrainChecks::GrainChecks(const DrainageLimits& limits, std::shared_ptr<const Con
   limits_.validate();
 }
 
-/// Throws unless the grain is inside the walls or falling out of the orifice, above `lowest` and within `reach` of its
-/// axis.
-void GrainChecks::require_inside(const Grain& grain, double lowest, double reach) const {
-  const Orifice& orifice = container_->orifice();
+/// Throws unless the grain is inside the walls or falling out of an outlet, above `lowest` and no farther than
+/// `beside` from under its hole (length).
+void GrainChecks::require_inside(const Grain& grain, double lowest, double beside) const {
   const Vector3& centre = grain.position;
-  const bool falling = centre.z() < orifice.centre.z() && centre.z() >= lowest &&
-                       container_->periodic().nearest(Vector3(centre - orifice.centre)).head<2>().norm() <= reach;
+  const bool falling =
+      centre.z() < container_->outlets().height() && centre.z() >= lowest && container_->is_over_outlet(centre, beside);
   if (!falling && !container_->contains(centre))
     throw InvalidPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
                                  ") is outside the container"));
@@ -39,13 +38,11 @@ void GrainChecks::require_inside(const Grain& grain) const {
   require_inside(grain, -any, any);
 }
 
-void GrainChecks::require_valid_place(const Grain& grain) const {
-  require_inside(grain, limits_.outlet, container_->orifice().radius + diameter_);
-}
+void GrainChecks::require_valid_place(const Grain& grain) const { require_inside(grain, limits_.outlet, diameter_); }
 
 double GrainChecks::depth_in_walls(const Grain& grain) const {
   const double radius = radius_in(diameter_, grain);
-  if (grain.held || grain.position.z() < container_->orifice().centre.z()) return 0.0;
+  if (grain.held || grain.position.z() < container_->outlets().height()) return 0.0;
   WallContacts contacts;
   container_->contacts(grain.position, radius, contacts);
   double deepest = 0.0;
@@ -78,8 +75,8 @@ void GrainChecks::require_left_through_orifice(const std::vector<Grain>& drained
     const Vector3& centre = grain.position;
     if (container_->may_have_left_to(centre)) continue;
     throw CollapsedPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
-                                   ") left through the base, beside the orifice of radius ",
-                                   container_->orifice().radius, ": relax more, or let spots displace less at a time"));
+                                   ") left through the base, beside the ", container_->outlets().nearest(centre).name(),
+                                   ": relax more, or let spots displace less at a time"));
   }
 }
 

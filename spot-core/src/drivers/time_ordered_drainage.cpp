@@ -89,8 +89,8 @@ void TimeOrderedDrainage::carry_out(Move move) {
   const int enclosed = displace(packing_, near_, move, spot_parameters(), received());
   count_move(enclosed);
   if (enclosed == 0) {
-    // Below the orifice a spot may meet no grains yet; above it, it has come out at the top of the packing.
-    if (move.middle.z() > container().orifice().centre.z() + spot_parameters().radius) spots_.remove(move.spot);
+    // Below the outlets a spot may meet no grains yet; above it, it has come out at the top of the packing.
+    if (move.middle.z() > container().outlets().height() + spot_parameters().radius) spots_.remove(move.spot);
     return;
   }
   if (relaxes_around(move)) {

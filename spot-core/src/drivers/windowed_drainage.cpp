@@ -25,14 +25,19 @@ constexpr double most_steps = 1e6, most_births = 1e7;
 }  // namespace
 
 double WindowedDrainage::flow_through_orifice(const SpotParameters& spots, double time, double diameter,
-                                              double orifice_radius) {
+                                              const Outlets& outlets) {
   constexpr double packing_fraction = calibration::packing_fraction_of_flow;
-  const double radii = spots.equivalent_radius() / diameter, orifice = orifice_radius / diameter;
+  const double radii = spots.equivalent_radius() / diameter;
   const double enclosed =
       spots.fixed_volume > 0.0 ? spots.fixed_volume : 8.0 * packing_fraction * radii * radii * radii;
-  const double grains = time * spots.injection_rate * spots.influence * enclosed;
-  // A grain takes pi / 6 d^3; what passes is a cylinder as wide as the orifice.
-  return grains / (6.0 * packing_fraction * orifice * orifice);
+  double most = 0.0;
+  for (std::size_t k = 0; k < outlets.size(); ++k) {
+    const double grains = time * spots.injection_rate.largest(k) * spots.influence * enclosed;
+    const double orifice = outlets[k].hole->equivalent_radius() / diameter;
+    // A grain takes pi / 6 d^3; what passes is a cylinder as wide as the orifice.
+    most = std::max(most, grains / (6.0 * packing_fraction * orifice * orifice));
+  }
+  return most;
 }
 
 void WindowedDrainage::require_fitting_window() const {
@@ -50,9 +55,10 @@ void WindowedDrainage::require_fitting_window() const {
   const double highest = clock * (spot_parameters().fastest() / diameter());
   require(highest, highest_climb, "diameters are climbed by spots");
   require(clock * spot_parameters().fastest() / spot_parameters().step_height, most_steps, "steps are taken by a spot");
-  require(clock * spot_parameters().injection_rate, most_births, "spots are born");
-  require(flow_through_orifice(spot_parameters(), clock, diameter(), container().orifice().radius),
-          calibration::longest_flow_in_a_window, "diameters pass the orifice");
+  require(clock * spot_parameters().injection_rate.largest(), most_births, "spots are born");
+  require(
+      flow_through_orifice(spot_parameters(), clock, diameter(), container().outlets()),
+      calibration::longest_flow_in_a_window, "diameters pass the orifice");
 }
 
 double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tolerance, double diameter) {
@@ -138,7 +144,7 @@ void WindowedDrainage::weigh(const std::vector<int>& enclosed, std::vector<Move>
 
 /// Spots that are inside and enclose nothing have come out at the top.
 void WindowedDrainage::remove_spots_above() {
-  const double inside = container().orifice().centre.z() + spot_parameters().radius;
+  const double inside = container().outlets().height() + spot_parameters().radius;
   for (const SharedMove& shared : moves_.all()) {
     if (!moves_.own(shared)) continue;
     count_move(shared.enclosed);

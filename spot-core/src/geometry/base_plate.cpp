@@ -8,38 +8,39 @@
 
 namespace spot {
 
-BasePlate::BasePlate(const Orifice& orifice) : orifice_(orifice) {}
+BasePlate::BasePlate(const Outlets& outlets) : outlets_(outlets) {}
 
 WallContact BasePlate::nearest(const Vector3& centre) const {
-  const double dx = centre.x() - orifice_.centre.x();
-  const double dy = centre.y() - orifice_.centre.y();
-  const double height = centre.z() - orifice_.centre.z();
-  const double from_axis = length(dx, dy);
-  if (from_axis >= orifice_.radius) return {std::abs(height), {0.0, 0.0, height < 0.0 ? -1.0 : 1.0}};
-  if (from_axis == 0.0) return {length(orifice_.radius, height), {0.0, 0.0, 1.0}};
-  const double to_rim = orifice_.radius - from_axis;
-  const double distance = length(to_rim, height);
-  return {distance, {-dx / from_axis * to_rim / distance, -dy / from_axis * to_rim / distance, height / distance}};
+  const Outlet& outlet = outlets_.nearest(centre);
+  const Vector3 place = centre - outlet.centre;
+  const double height = place.z(), beside = outlet.hole->distance(place);
+  if (beside >= 0.0) return {std::abs(height), {0.0, 0.0, height < 0.0 ? -1.0 : 1.0}};
+  const Vector3 to_rim = outlet.hole->to_rim(place);
+  const double distance = length(beside, height);
+  if (to_rim.isZero(0.0)) return {distance, {0.0, 0.0, 1.0}};
+  return {distance, {to_rim.x() * beside / distance, to_rim.y() * beside / distance, height / distance}};
 }
 
 Vector3 BasePlate::reflect_spot(double buffer, const Vector3& target) const {
-  const double above = target.z() - orifice_.centre.z(), height = std::max(0.0, above);
+  const double above = target.z() - outlets_.height(), height = std::max(0.0, above);
   if (above >= 0.0 && height >= buffer) return target;
   const double rim_clearance = std::sqrt(buffer * buffer - height * height);
-  return orifice_.keep_within(std::max(0.0, orifice_.radius - rim_clearance), target);
+  const Outlet& outlet = outlets_.nearest(target);
+  const Vector3 place = target - outlet.centre, inside = outlet.hole->keep_inside(rim_clearance, place);
+  if (inside == place) return target;
+  return {outlet.centre.x() + inside.x(), outlet.centre.y() + inside.y(), target.z()};
 }
 
 std::optional<WallOnPath> BasePlate::meet(const Vector3& from, const Vector3& to) const {
-  const auto share = orifice_.passed_at(from, to);
+  const auto share = outlets_.passed_at(from, to);
   if (!share) return std::nullopt;
-  const Vector3 passed = from + *share * (to - from) - orifice_.centre;
-  if (length(passed.x(), passed.y()) <= orifice_.radius) return std::nullopt;
-  return WallOnPath{*share, {0.0, 0.0, from.z() < orifice_.centre.z() ? -1.0 : 1.0}};
+  const Vector3 passed = from + *share * (to - from);
+  if (outlets_.nearest(passed).distance(passed) <= 0.0) return std::nullopt;
+  return WallOnPath{*share, {0.0, 0.0, from.z() < outlets_.height() ? -1.0 : 1.0}};
 }
 
 bool BasePlate::may_have_left_to(const Vector3& centre) const {
-  const double from_axis = length(centre.x() - orifice_.centre.x(), centre.y() - orifice_.centre.y());
-  return from_axis <= orifice_.radius + std::max(0.0, orifice_.centre.z() - centre.z());
+  return outlets_.nearest(centre).distance(centre) <= std::max(0.0, outlets_.height() - centre.z());
 }
 
 }  // namespace spot

@@ -6,10 +6,10 @@
 namespace spot {
 
 std::optional<WallOnPath> BodyContainer::first_wall(const Vector3& from, const Vector3& to) const {
-  const bool rises = from.z() < orifice_.centre.z();
-  const auto passed = orifice_.passed_at(from, to);
+  const bool rises = from.z() < outlets_.height();
+  const auto passed = outlets_.passed_at(from, to);
   if (rises && !passed) return std::nullopt;
-  // Even where the body leads on below, nothing gets past the orifice.
+  // Even where the body leads on below, nothing gets past their height beside the outlets.
   auto base = base_.meet(from, to);
   if (rises && base) return base;
   const double begin = rises ? *passed : 0.0, end = passed && !rises ? *passed : 1.0;
@@ -34,7 +34,7 @@ std::optional<Vector3> BodyContainer::reflect_spot(const Vector3& start, const V
       position += 2.0 * (buffers_.side + behind) * wall->normal;
       continue;
     }
-    if (position.z() <= orifice_.centre.z()) return position;
+    if (position.z() <= outlets_.height()) return position;
     const auto close = nearest_wall(position, buffers_.side);
     if (!close) return position;
     position += 2.0 * (buffers_.side - close->distance) * close->normal;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/geometry/container.hpp"
 
+#include <algorithm>
+
 #include "spot/base/errors.hpp"
 
 namespace spot {
@@ -21,10 +23,18 @@ const Periodic& Container::periodic() const {
   return none;
 }
 
+bool Container::is_over_outlet(const Vector3& place, double margin) const {
+  return std::any_of(outlets().begin(), outlets().end(), [&](const Outlet& outlet) {
+    return outlet.hole->distance(periodic().nearest(Vector3(place - outlet.centre))) <= margin;
+  });
+}
+
 void Container::require_entrance(double spot_radius) const {
-  if (orifice().radius < spot_radius)
-    throw InvalidContainer(message("orifice radius is ", orifice().radius, " but must be at least the spot radius, ",
-                                   spot_radius, ": narrower orifices clog, which is outside the spot model"));
+  for (const Outlet& outlet : outlets())
+    if (outlet.hole->widest_radius() < spot_radius)
+      throw InvalidContainer(
+          message("orifice radius is ", outlet.hole->widest_radius(), " but must be at least the spot radius, ",
+                  spot_radius, ": narrower orifices clog, which is outside the spot model (", outlet.name(), ")"));
 }
 
 }  // namespace spot

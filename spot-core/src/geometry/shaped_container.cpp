@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/geometry/shaped_container.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "geometry/directions.hpp"
 #include "spot/geometry/shapes.hpp"
 
@@ -8,55 +11,61 @@ namespace spot {
 
 namespace {
 
-const Orifice& valid(const Orifice& orifice, const SpotBuffers& buffers) {
-  require_finite(orifice.centre, "the centre of the orifice");
-  require_positive(orifice.radius, "the radius of the orifice");
+const Outlets& valid(const Outlets& outlets, const SpotBuffers& buffers) {
   for (const double buffer : {buffers.side, buffers.base})
     if (!(buffer >= 0.0) || !std::isfinite(buffer))
       throw InvalidContainer(message("spot buffer is ", buffer, " but must be zero or positive"));
-  return orifice;
+  return outlets;
 }
 
-/// What is above the orifice, and a pipe that leads on below it.
-Solid open_at(const Orifice& orifice, const Solid& solid) {
+/// What is above the outlets, and pipes that lead on below them.
+Solid open_at(const Outlets& outlets, const Solid& solid) {
   const Vector3 up = Vector3::UnitZ();
-  return (solid & half_space(orifice.centre, up)) |
-         (cylinder(orifice.centre, up, orifice.radius) & half_space(orifice.centre, -up));
+  Solid open = solid & half_space(outlets[0].centre, up);
+  for (const Outlet& outlet : outlets)
+    open = open | (outlet.hole->column(outlet.centre) & half_space(outlet.centre, -up));
+  return open;
+}
+
+double narrowest(const Outlets& outlets) {
+  double radius = std::numeric_limits<double>::infinity();
+  for (const Outlet& outlet : outlets) radius = std::min(radius, outlet.hole->widest_radius());
+  return radius;
 }
 
 }  // namespace
 
-ShapedContainer::ShapedContainer(const Solid& solid, const Orifice& orifice, const SpotBuffers& buffers)
-    : BodyContainer(valid(orifice, buffers), buffers), boundary_(open_at(orifice, solid), orifice.radius) {
-  require_mouth();
+ShapedContainer::ShapedContainer(const Solid& solid, const Outlets& outlets, const SpotBuffers& buffers)
+    : BodyContainer(valid(outlets, buffers), buffers), boundary_(open_at(outlets, solid), narrowest(outlets)) {
+  for (const Outlet& outlet : outlets) require_mouth(outlet);
 }
 
-void ShapedContainer::require_mouth() const {
-  const Vector3& c = orifice().centre;
-  const double radius = orifice().radius;
-  constexpr int turns = 64;
-  for (const double share : {0.0, 0.25, 0.5, 0.75, 0.9, 0.99, 1.0 - 1e-6})
-    for (int turn = 0; turn < turns; ++turn) {
-      const Vector3 out = around(static_cast<double>(turn) / turns, Vector3::UnitX(), Vector3::UnitY());
-      const Vector3 at = c + share * radius * out + Vector3(0.0, 0.0, 1e-6 * radius);
+/// At places all over the hole: of a round one on circles around its centre, of a slot on lines across it, with its
+/// corners.
+void ShapedContainer::require_mouth(const Outlet& outlet) const {
+  const double radius = outlet.hole->widest_radius();
+  constexpr int lines = 64;
+  for (const double share : {0.0, 0.25, 0.5, 0.75, 0.9, 0.99, 1.0})
+    for (int line = 0; line <= lines; ++line) {
+      const Vector3 place = outlet.hole->point(1e-6 * radius, share * share, static_cast<double>(line) / lines);
+      const Vector3 at = outlet.centre + place + Vector3(0.0, 0.0, 1e-6 * radius);
       if (!contains(at))
-        throw InvalidContainer(message("the orifice of radius ", radius, " at (", c.x(), ", ", c.y(), ", ", c.z(),
-                                       ") does not open into the container: at (", at.x(), ", ", at.y(), ", ", at.z(),
-                                       ") there is none"));
+        throw InvalidContainer(message("the ", outlet.name(), " does not open into the container: at (", at.x(), ", ",
+                                       at.y(), ", ", at.z(), ") there is none"));
     }
 }
 
 bool ShapedContainer::contains(const Vector3& centre) const {
-  return centre.z() >= orifice().centre.z() && boundary_.contains(centre);
+  return centre.z() >= outlets().height() && boundary_.contains(centre);
 }
 
 void ShapedContainer::contacts(const Vector3& centre, double reach, WallContacts& contacts) const {
   contacts.clear();
-  if (centre.z() >= orifice().centre.z()) boundary_.add_contacts(centre, reach, contacts);
+  if (centre.z() >= outlets().height()) boundary_.add_contacts(centre, reach, contacts);
 }
 
 bool ShapedContainer::may_have_left_to(const Vector3& centre) const {
-  return BasePlate(orifice()).may_have_left_to(centre);
+  return BasePlate(outlets()).may_have_left_to(centre);
 }
 
 std::optional<WallContact> ShapedContainer::nearest_wall(const Vector3& place, double reach) const {

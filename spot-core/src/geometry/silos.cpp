@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "geometry/length.hpp"
 #include "spot/base/errors.hpp"
 #include "spot/geometry/base_plate.hpp"
 #include "spot/geometry/cylinder_wall.hpp"
@@ -28,21 +27,22 @@ void require_room(const char* axis, double low, double high, double buffer) {
 }  // namespace
 
 std::unique_ptr<WalledContainer> box_silo(double x_low, double x_high, double y_low, double y_high,
-                                          const Orifice& orifice, const SpotBuffers& buffers) {
+                                          const Outlets& outlets, const SpotBuffers& buffers) {
   require_order("x", x_low, x_high);
   require_order("y", y_low, y_high);
   require_room("x", x_low, x_high, buffers.side);
   require_room("y", y_low, y_high, buffers.side);
-  auto silo = std::make_unique<WalledContainer>(orifice);
-  const Vector3& c = orifice.centre;
-  const double r = orifice.radius;
-  const double slack = 1e-9 * r;  // an orifice exactly as wide as the silo is allowed, whatever the rounding
-  if (c.x() - r < x_low - slack || c.x() + r > x_high + slack || c.y() - r < y_low - slack ||
-      c.y() + r > y_high + slack)
-    throw InvalidContainer(message("orifice of radius ", r, " at (", c.x(), ", ", c.y(),
-                                   ") is wider than the base, x from ", x_low, " to ", x_high, ", y from ", y_low,
-                                   " to ", y_high));
-  silo->add(std::make_unique<BasePlate>(orifice), buffers.base);
+  for (const Outlet& outlet : outlets) {
+    const Vector3 half(outlet.hole->half_width(0), outlet.hole->half_width(1), 0.0);
+    const Vector3 low = outlet.centre - half, high = outlet.centre + half;
+    // One exactly as wide as the silo is allowed, whatever the rounding.
+    const double slack = 1e-9 * outlet.hole->widest_radius();
+    if (low.x() < x_low - slack || high.x() > x_high + slack || low.y() < y_low - slack || high.y() > y_high + slack)
+      throw InvalidContainer(message(outlet.name(), " is wider than the base, x from ", x_low, " to ", x_high,
+                                     ", y from ", y_low, " to ", y_high));
+  }
+  auto silo = std::make_unique<WalledContainer>(outlets);
+  silo->add(std::make_unique<BasePlate>(outlets), buffers.base);
   silo->add(std::make_unique<PlaneWall>(Vector3(x_low, 0, 0), Vector3(1, 0, 0)), buffers.side);
   silo->add(std::make_unique<PlaneWall>(Vector3(x_high, 0, 0), Vector3(-1, 0, 0)), buffers.side);
   silo->add(std::make_unique<PlaneWall>(Vector3(0, y_low, 0), Vector3(0, 1, 0)), buffers.side);
@@ -50,17 +50,19 @@ std::unique_ptr<WalledContainer> box_silo(double x_low, double x_high, double y_
   return silo;
 }
 
-std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius, const Orifice& orifice,
+std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius, const Outlets& outlets,
                                                const SpotBuffers& buffers) {
   auto wall = std::make_unique<CylinderWall>(x, y, radius);
   if (radius < buffers.side)
     throw InvalidContainer(message("cylinder radius is ", radius, " but spots keep ", buffers.side, " from its wall"));
-  auto silo = std::make_unique<WalledContainer>(orifice);
-  const double reach = length(orifice.centre.x() - x, orifice.centre.y() - y) + orifice.radius;
-  if (reach > radius * (1.0 + 1e-9))
-    throw InvalidContainer(
-        message("orifice reaches ", reach, " from the axis and is wider than the base of radius ", radius));
-  silo->add(std::make_unique<BasePlate>(orifice), buffers.base);
+  for (const Outlet& outlet : outlets) {
+    const double reach = outlet.hole->farthest(outlet.centre - Vector3(x, y, 0.0));
+    if (reach > radius * (1.0 + 1e-9))
+      throw InvalidContainer(
+          message(outlet.name(), " reaches ", reach, " from the axis and is wider than the base of radius ", radius));
+  }
+  auto silo = std::make_unique<WalledContainer>(outlets);
+  silo->add(std::make_unique<BasePlate>(outlets), buffers.base);
   silo->add(std::move(wall), buffers.side);
   return silo;
 }

@@ -27,11 +27,6 @@ std::vector<double> ends_of_pieces(const Periodic& periodic, const Vector3& from
 
 }  // namespace
 
-WalledContainer::WalledContainer(const Orifice& orifice) : orifice_(orifice) {
-  if (!(orifice.radius > 0.0) || !std::isfinite(orifice.radius) || !orifice.centre.allFinite())
-    throw InvalidContainer(message("orifice radius is ", orifice.radius, " but must be positive and finite"));
-}
-
 void WalledContainer::add(std::unique_ptr<Wall> wall, double spot_buffer) {
   if (!(spot_buffer >= 0.0) || !std::isfinite(spot_buffer))
     throw InvalidContainer(message("spot buffer is ", spot_buffer, " but must be zero or positive"));
@@ -49,32 +44,37 @@ void WalledContainer::require_no_period_across(const AxisPlane& plane) const {
 }
 
 void WalledContainer::repeat(const Periodic& periodic) {
-  for (int axis = 0; axis < 2; ++axis)
-    if (orifice_.centre[axis] - orifice_.radius < periodic.low(axis) ||
-        orifice_.centre[axis] + orifice_.radius > periodic.high(axis))
-      throw InvalidContainer(message("orifice of radius ", orifice_.radius, " at ", "xy"[axis], " = ",
-                                     orifice_.centre[axis], " reaches out of the cell that repeats, from ",
-                                     periodic.low(axis), " to ", periodic.high(axis)));
+  for (const Outlet& outlet : outlets_)
+    for (int axis = 0; axis < 2; ++axis)
+      if (outlet.centre[axis] - outlet.hole->half_width(axis) < periodic.low(axis) ||
+          outlet.centre[axis] + outlet.hole->half_width(axis) > periodic.high(axis))
+        throw InvalidContainer(message(outlet.name(), " reaches out of the cell that repeats, along ", "xy"[axis],
+                                       " from ", periodic.low(axis), " to ", periodic.high(axis)));
   periodic_ = periodic;
   for (const AxisPlane& plane : axis_planes_) require_no_period_across(plane);
 }
 
 bool WalledContainer::contains(const Vector3& place) const {
-  const Vector3 centre = periodic_.wrap(place);
+  const Vector3 centre = periodic_.any() ? periodic_.wrap(place) : place;
   return std::all_of(walls_.begin(), walls_.end(),
                      [&](const Bounded& b) { return b.wall->nearest(centre).distance >= 0.0; }) &&
-         centre.z() >= orifice_.centre.z();
+         centre.z() >= outlets_.height();
 }
 
 bool WalledContainer::may_have_left_to(const Vector3& place) const {
-  // Below the orifice grains may have gone on into the next cell: to the image nearest to its axis.
-  const Vector3 centre =
-      periodic_.any() ? orifice_.centre + periodic_.nearest(Vector3(place - orifice_.centre)) : place;
-  return std::all_of(walls_.begin(), walls_.end(), [&](const Bounded& b) { return b.wall->may_have_left_to(centre); });
+  const auto may_have_left = [&](const Vector3& centre) {
+    return std::all_of(walls_.begin(), walls_.end(),
+                       [&](const Bounded& b) { return b.wall->may_have_left_to(centre); });
+  };
+  if (!periodic_.any()) return may_have_left(place);
+  // Below an outlet grains may have gone on into the next cell: to the image nearest to its axis.
+  return std::any_of(outlets_.begin(), outlets_.end(), [&](const Outlet& outlet) {
+    return may_have_left(outlet.centre + periodic_.nearest(Vector3(place - outlet.centre)));
+  });
 }
 
 void WalledContainer::contacts(const Vector3& place, double reach, WallContacts& contacts) const {
-  const Vector3 centre = periodic_.wrap(place);
+  const Vector3 centre = periodic_.any() ? periodic_.wrap(place) : place;
   contacts.clear();
   for (const Bounded& b : walls_) {
     const WallContact contact = b.wall->nearest(centre);
@@ -83,7 +83,7 @@ void WalledContainer::contacts(const Vector3& place, double reach, WallContacts&
 }
 
 void WalledContainer::other_contacts(const Vector3& place, double reach, WallContacts& contacts) const {
-  const Vector3 centre = periodic_.wrap(place);
+  const Vector3 centre = periodic_.any() ? periodic_.wrap(place) : place;
   contacts.clear();
   for (const Bounded& b : walls_) {
     if (b.wall->axis_plane()) continue;
@@ -109,14 +109,14 @@ std::optional<WallOnPath> WalledContainer::first_wall(const Vector3& from, const
 
 /// Of a path in the cell. Walls go on beyond it.
 std::optional<WallOnPath> WalledContainer::first_wall_in_cell(const Vector3& from, const Vector3& to) const {
-  const bool rises = from.z() < orifice_.centre.z();
-  const auto passed = orifice_.passed_at(from, to);
+  const bool rises = from.z() < outlets_.height();
+  const auto passed = outlets_.passed_at(from, to);
   if (rises && !passed) return std::nullopt;
   const double begin = rises ? *passed : 0.0, end = passed && !rises ? *passed : 1.0;
   std::optional<WallOnPath> first;
   for (const Bounded& b : walls_) {
     auto wall = b.wall->meet(from, to);
-    // Planes go on below the orifice, where they are no walls.
+    // Planes go on below the outlets, where they are no walls.
     if (wall && wall->share < begin && (wall = b.wall->meet(from + begin * (to - from), to)))
       wall->share = begin + wall->share * (1.0 - begin);
     if (wall && wall->share <= end && (!first || wall->share < first->share)) first = wall;

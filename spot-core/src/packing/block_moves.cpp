@@ -93,10 +93,10 @@ void BlockMoves::find_rows_of_images(Part& part, const Vector3& middle, double r
     }
 }
 
-/// Of the move, or of its image that reaches a row.
+/// Of the image of a move that reaches a row.
 Point BlockMoves::middle(const Part& part, std::size_t move, std::size_t row) const {
   Point middle = middles_[move];
-  if (!part.shifts.empty()) add(middle, part.shifts[row]);
+  add(middle, part.shifts[row]);
   return middle;
 }
 
@@ -119,7 +119,7 @@ void BlockMoves::find(Part& part, const std::vector<Move>& moves, double radius)
     for (std::size_t r = before; r < part.rows.size(); ++r) {
       const CellRow& row = part.rows[r];
       const std::uint32_t first = cells_.first_slot(row.first), n = cells_.first_slot(row.last) - first;
-      const Point middle = this->middle(part, m, r);
+      const Point middle = part.shifts.empty() ? middles_[m] : this->middle(part, m, r);
       const Point* points = cells_.points.data() + first;
       enclosed += cells_.unequal()
                       ? kernels_.enclosed_volume_of_unequal(points, cells_.sizes.data() + first, n, middle, reach_)
@@ -191,7 +191,7 @@ void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool coun
     });
     for (std::size_t r = part.first_row(m); r < part.end_of_rows[m]; ++r) {
       const std::uint32_t slot = cells_.first_slot(part.rows[r].first), n = cells_.first_slot(part.rows[r].last) - slot;
-      const Point middle = this->middle(part, m, r);
+      const Point middle = part.shifts.empty() ? middles_[m] : this->middle(part, m, r);
       if (count) count_received(slot, n, middle, found);
       kernels_.displace(cells_.points.data() + slot, n, middle, reach_, steps_[m]);
     }

@@ -129,47 +129,78 @@ Point CellLattice::shift_to(const Cell& image) const {
   return periods(side(image.x, n_[0]), side(image.y, n_[1]));
 }
 
-/// The outermost cells also hold what lies beyond the lattice, unless there are images.
-double CellLattice::end_of_cell(int cell, std::size_t axis, bool high) const {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  if (images_[axis] == 0) {
-    if (high && cell == n_[axis] - 1) return infinite;
-    if (!high && cell == 0) return -infinite;
+namespace {
+
+/// Along an axis, which cells a place may be in, and how far it is from one. The outermost cells also hold what lies
+/// beyond the lattice.
+struct OpenAxis {
+  double edge, per_edge;
+  int n;
+
+  int cell(double from_low) const {
+    const double at = from_low * per_edge;
+    return at < 0.0 ? 0 : at >= n ? n - 1 : static_cast<int>(at);
   }
-  const int end = high ? cell + 1 : cell;
-  if (images_[axis] == 0 || (end >= 0 && end < n_[axis])) return end * edge_[axis];
-  const double period = periodic_.length(static_cast<int>(axis));
-  return end < 0 ? (n_[axis] - 1) * edge_[axis] - period : period + (end - n_[axis]) * edge_[axis];
-}
+  double gap(double from_low, int cell) const {
+    const double before = cell == 0 ? 0.0 : cell * edge - from_low;
+    const double beyond = cell == n - 1 ? 0.0 : from_low - (cell + 1) * edge;
+    return std::max(0.0, std::max(before, beyond));
+  }
+};
 
-/// The cell along an axis in which a place is, perhaps an image.
-int CellLattice::first_within(double from_low, int axis, bool with_images) const {
-  const auto a = static_cast<std::size_t>(axis);
-  if (images_[a] == 0 || !with_images) return coordinate(from_low, axis);
-  if (from_low < 0.0) return -1;
-  return from_low >= periodic_.length(axis) ? n_[a] : coordinate(from_low, axis);
-}
+/// The same where space repeats: images stand at the ends, or, where none are asked for, nothing does.
+struct RepeatingAxis {
+  OpenAxis open;
+  double period;
+  bool with_images;
 
-void CellLattice::find_rows(const Vector3& at, double reach, int first, int last, bool with_images,
+  int cell(double from_low) const {
+    if (!with_images) return open.cell(from_low);
+    return from_low < 0.0 ? -1 : from_low >= period ? open.n : open.cell(from_low);
+  }
+  double gap(double from_low, int cell) const {
+    return std::max(0.0, std::max(end(cell) - from_low, from_low - end(cell + 1)));
+  }
+  double end(int cell) const {
+    if (cell < 0) return (open.n - 1) * open.edge - period;
+    return cell < open.n ? cell * open.edge : period + (cell - open.n) * open.edge;
+  }
+};
+
+}  // namespace
+
+template <typename X, typename Y>
+void CellLattice::find_rows(const Vector3& at, double reach, int first, int last, const X& along_x, const Y& along_y,
                             std::vector<CellRow>& rows) const {
-  const int z0 = std::max(first, coordinate(at.z() - reach, 2));
-  const int z1 = std::min(last - 1, coordinate(at.z() + reach, 2));
-  const int y0 = first_within(at.y() - reach, 1, with_images), y1 = first_within(at.y() + reach, 1, with_images);
-  // Squared distance along one axis to a cell.
-  const auto gap = [this](double from_low, int cell, std::size_t axis) {
-    const double before = end_of_cell(cell, axis, false) - from_low, beyond = from_low - end_of_cell(cell, axis, true);
-    return square(std::max(0.0, std::max(before, beyond)));
-  };
+  const OpenAxis along_z = {edge_[2], per_edge_[2], n_[2]};
+  const int z0 = std::max(first, along_z.cell(at.z() - reach)), z1 = std::min(last - 1, along_z.cell(at.z() + reach));
+  const int y0 = along_y.cell(at.y() - reach), y1 = along_y.cell(at.y() + reach);
   for (int iz = z0; iz <= z1; ++iz) {
-    const double in_layer = square(reach) - gap(at.z(), iz, 2);
+    const double in_layer = square(reach) - square(along_z.gap(at.z(), iz));
     for (int iy = y0; iy <= y1; ++iy) {
-      const double in_row = in_layer - gap(at.y(), iy, 1);
+      const double in_row = in_layer - square(along_y.gap(at.y(), iy));
       if (in_row < 0.0) continue;
       const double half = std::sqrt(in_row);
-      rows.push_back({number_of({first_within(at.x() - half, 0, with_images), iy, iz}),
-                      number_of({first_within(at.x() + half, 0, with_images), iy, iz}) + 1});
+      const std::uint32_t row = number_of({0, iy, iz});
+      rows.push_back({row + static_cast<std::uint32_t>(along_x.cell(at.x() - half)),
+                      row + static_cast<std::uint32_t>(along_x.cell(at.x() + half)) + 1});
     }
   }
+}
+
+void CellLattice::find_rows(const Vector3& from_low, double reach, int first, int last, bool with_images,
+                            std::vector<CellRow>& rows) const {
+  const OpenAxis x = {edge_[0], per_edge_[0], n_[0]}, y = {edge_[1], per_edge_[1], n_[1]};
+  const RepeatingAxis around_x = {x, periodic_.length(0), with_images},
+                      around_y = {y, periodic_.length(1), with_images};
+  if (images_[0] == 0 && images_[1] == 0)
+    find_rows(from_low, reach, first, last, x, y, rows);
+  else if (images_[0] == 0)
+    find_rows(from_low, reach, first, last, x, around_y, rows);
+  else if (images_[1] == 0)
+    find_rows(from_low, reach, first, last, around_x, y, rows);
+  else
+    find_rows(from_low, reach, first, last, around_x, around_y, rows);
 }
 
 }  // namespace spot

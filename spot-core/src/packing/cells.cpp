@@ -139,8 +139,10 @@ void Cells::note_change(std::uint32_t slot) {
 
 // ---- the rest
 
-Grain Cells::grain(std::uint32_t slot) const {
-  return {ids[slot], lattice().periodic().wrap(position(slot)), points[slot].state == Point::held, radius(slot)};
+Grain Cells::grain(std::uint32_t slot, const Cell& listed_in) const {
+  const Vector3 place = lattice().low() + lattice().from_low(points[slot], listed_in);
+  return {ids[slot], repeat() ? lattice().periodic().wrap(place) : place, points[slot].state == Point::held,
+          radius(slot)};
 }
 
 std::vector<std::int64_t> Cells::grains_in_own_layers() const {

@@ -203,7 +203,11 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
 // ---- the rest
 
 void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit) const {
-  cells_.visit_own([&](std::uint32_t slot) { visit(cells_.grain(slot)); });
+  for (std::uint32_t cell = cells_.first_own(); cell < cells_.last_own(); ++cell) {
+    if (cells_.is_image(cell)) continue;
+    const Cell listed_in = cells_.lattice().cell(cell);
+    cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.grain(slot, listed_in)); });
+  }
 }
 
 void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {

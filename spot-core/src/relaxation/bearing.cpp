@@ -37,13 +37,12 @@ bool Bearing::is_borne(std::uint32_t slot) const {
   }
   const Vector3 place = cells_.position(slot);
   const double diameter = 2.0 * cells_.radius(slot);
-  return is_over_orifice(place, wall_reach * diameter) || is_near_floor_or_slope(place, wall_reach * diameter);
+  return is_over_outlet(place, wall_reach * diameter) || is_near_floor_or_slope(place, wall_reach * diameter);
 }
 
-bool Bearing::is_over_orifice(const Vector3& place, double reach) const {
-  const Orifice& orifice = container_.orifice();
-  const double height = place.z() - orifice.centre.z();
-  return height < 0.0 || (height <= reach && (place - orifice.centre).head<2>().norm() <= orifice.radius);
+bool Bearing::is_over_outlet(const Vector3& place, double reach) const {
+  const double height = place.z() - container_.outlets().height();
+  return height < 0.0 || (height <= reach && container_.is_over_outlet(place));
 }
 
 bool Bearing::is_near_floor_or_slope(const Vector3& place, double reach) const {
@@ -56,17 +55,17 @@ bool Bearing::is_near_floor_or_slope(const Vector3& place, double reach) const {
 bool Bearing::is_on_floor(std::uint32_t slot) const {
   const Vector3 place = cells_.position(slot);
   const double diameter = 2.0 * cells_.radius(slot);
-  if (is_over_orifice(place, 0.5 * diameter)) return true;
+  if (is_over_outlet(place, 0.5 * diameter)) return true;
   WallContacts walls;
   if (packing_.walls().near_wall(slot)) container_.contacts(place, (0.5 + contact_gap) * diameter, walls);
   return std::any_of(walls.begin(), walls.end(), [](const WallContact& wall) { return wall.normal.z() > flat; });
 }
 
-double Bearing::depth_in_orifice(std::uint32_t slot) const {
+double Bearing::depth_in_outlet(std::uint32_t slot) const {
   const Vector3 place = cells_.position(slot);
   const double diameter = 2.0 * cells_.radius(slot);
-  const double height = (place.z() - container_.orifice().centre.z()) / diameter;
-  return height >= 0.0 && is_over_orifice(place, 0.5 * diameter) ? 0.5 - height : 0.0;
+  const double height = (place.z() - container_.outlets().height()) / diameter;
+  return height >= 0.0 && is_over_outlet(place, 0.5 * diameter) ? 0.5 - height : 0.0;
 }
 
 std::vector<Vector3> Bearing::contact_normals(std::uint32_t slot, std::int32_t least) const {

@@ -232,7 +232,7 @@ void Settling::take_along_neighbours() {
       if (cells_.own(cells_.cell_of(j)) && cells_.points[j].state == Point::free &&
           squared_distance(cells_.points[slot], cells_.points[j]) <=
               square((1.0 + reach_of_pressing) * cells_.touching_distance(slot, j)) &&
-          !bearing_.is_over_orifice(cells_.position(j), cells_.radius(j)))
+          !bearing_.is_over_outlet(cells_.position(j), cells_.radius(j)))
         found.push_back(j);
   };
   for (const Place& place : falling_) find(cells_.slot(place));
@@ -270,7 +270,7 @@ double Settling::part_laid(double down) {
   for (std::size_t k = 0; k < pressed_.count; ++k) {
     Point& push = pressed_.pushes[k];
     const double depth = 0.5 * static_cast<double>(depth_of(push));
-    const double through = bearing_.depth_in_orifice(pressed_.slots[k]);
+    const double through = bearing_.depth_in_outlet(pressed_.slots[k]);
     deepest = std::max(deepest, depth);
     if (through > 0.0)
       add(push, cells_.lattice().wrapped({0.0, 0.0, fixed_share * through * (2.0 * cells_.radius(pressed_.slots[k]))}));

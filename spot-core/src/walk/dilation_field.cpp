@@ -34,7 +34,7 @@ Vector3 sample(int number) {
 
 DilationField::DilationField(const SpotParameters& parameters, const Container& container, double diameter)
     : container_(&container),
-      origin_(container.orifice().centre),
+      origin_(container.outlets()[0].centre),
       spacing_(Vector3::Constant(std::max(parameters.radius, diameter))),
       spot_volume_(parameters.missing_volume(diameter)),
       reference_(parameters.dilation) {
@@ -72,8 +72,9 @@ std::array<DilationField::Corner, 8> DilationField::corners(const Vector3& point
       all[k].node[axis] += upper ? 1 : 0;
       all[k].weight *= upper ? share[axis] : parts - share[axis];
     }
-    all[k].node = wrapped(all[k].node);
   }
+  if (period_[0] != 0 || period_[1] != 0)
+    for (Corner& corner : all) corner.node = wrapped(corner.node);
   return all;
 }
 

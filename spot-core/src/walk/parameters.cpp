@@ -47,7 +47,7 @@ void SpotParameters::validate() const {
   require_positive("spot step width", step_width);
   require_positive("spot step height", step_height);
   require_positive("spot speed", speed);
-  require_positive("spot injection rate", injection_rate);
+  injection_rate.validate();
   if (!(fixed_volume >= 0.0) || !std::isfinite(fixed_volume))
     throw InvalidParameter(message("fixed volume is ", fixed_volume, " grains but must be zero (off) or positive"));
 }

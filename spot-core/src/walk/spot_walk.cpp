@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/walk/spot_walk.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "spot/base/elementary.hpp"
+#include "spot/base/errors.hpp"
 #include "spot/base/random.hpp"
 
 namespace spot {
 
 namespace {
 
+/// Of the birth of a spot: waiting time before it, two for its place in an outlet, and which outlet.
 std::array<double, 4> numbers_of_birth(const SpotParameters& p, std::int64_t id) {
   return uniform(p.seed, RandomPurpose::birth, static_cast<std::uint64_t>(id), 0);
 }
@@ -45,20 +45,23 @@ double opposite(double uniform) {
 
 SpotWalk::SpotWalk(const SpotParameters& parameters, const Container& container) : parameters_(parameters) {
   parameters_.validate();
+  if (parameters_.injection_rate.outlets() != container.outlets().size())
+    throw InvalidParameter(message("spot injection rates are for ", parameters_.injection_rate.outlets(),
+                                   " outlets but the container has ", container.outlets().size()));
   container.require_entrance(parameters_.equivalent_radius());
 }
 
-double SpotWalk::time_before_birth(std::int64_t id) const {
-  return exponential(numbers_of_birth(parameters_, id)[0], parameters_.injection_rate);
+double SpotWalk::time_of_birth(std::int64_t id, double time_before) const {
+  return parameters_.injection_rate.next_birth(time_before, exponential(numbers_of_birth(parameters_, id)[0], 1.0));
 }
 
 Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) const {
   const auto numbers = numbers_of_birth(parameters_, id);
-  const Orifice& orifice = container.orifice();
-  const double from_axis = std::max(0.0, orifice.radius - parameters_.radius) * std::sqrt(numbers[1]);
-  Spot spot{id, 0, orifice.centre, time};
-  spot.position +=
-      Vector3(from_axis * cos_of_turns(numbers[2]), from_axis * sin_of_turns(numbers[2]), -parameters_.radius);
+  const Outlet& outlet = container.outlets()[parameters_.injection_rate.outlet_of_birth(time, numbers[3])];
+  Spot spot{id, 0, outlet.centre, time};
+  Vector3 from_centre = outlet.hole->point(parameters_.radius, numbers[1], numbers[2]);
+  from_centre.z() = -parameters_.radius;
+  spot.position += from_centre;
   draw_next_step(spot);
   return spot;
 }

@@ -12,7 +12,7 @@ namespace spot {
 
 Spots::Spots(const SpotParameters& parameters, const Container& container, double diameter)
     : walk_(parameters, container),
-      next_birth_(walk_.time_before_birth(0)),
+      next_birth_(walk_.time_of_birth(0, 0.0)),
       dilates_(parameters.dilation > 0.0),
       dilation_(parameters, container, diameter),
       setting_interval_(dilates_ ? calibration::climb_between_settings * parameters.radius / parameters.speed : 0.0) {}
@@ -25,7 +25,7 @@ bool Spots::bear_next(const Container& container, const Belongs& here) {
     if (dilates_) walk_.set_relative_speed(spot, next_birth_, dilation_.relative_speed(spot.position));
     places_.push_back({spot, false});
   }
-  next_birth_ += walk_.time_before_birth(++born_);
+  next_birth_ = walk_.time_of_birth(++born_, next_birth_);
   return kept;
 }
 

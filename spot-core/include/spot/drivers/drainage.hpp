@@ -44,7 +44,8 @@ class Drainage {
   /// The same, told what all grains are now. On one rank only.
   void replace_grains(const std::vector<Grain>& grains);
 
-  /// Goes on with other walls; grains that are outside them are found by require_inside().
+  /// Goes on with other walls; grains that are outside them are found by require_inside(). Throws InvalidContainer unless
+  /// there are as many outlets as before.
   void replace_container(std::shared_ptr<const Container> container);
 
   /// Goes on with another number of threads, where the driver has any. Throws InvalidParameter as Workers does.
@@ -71,7 +72,7 @@ class Drainage {
   /// All grains, in increasing order of ids.
   std::vector<Grain> grains() const;
 
-  /// Throws InvalidPacking, naming the grain, if one has left the container other than through the orifice.
+  /// Throws InvalidPacking, naming the grain, if one has left the container other than through an outlet.
   void require_inside() const;
 
   /// Of this rank: its spots, its grains; of sweeps, those on all ranks.

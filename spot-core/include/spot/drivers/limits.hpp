@@ -35,14 +35,15 @@ class GrainChecks {
   const DrainageLimits& limits() const { return limits_; }
   void replace_container(std::shared_ptr<const Container> container) { container_ = std::move(container); }
 
-  /// InvalidPacking, if a grain of a running drainage has left the container other than through the orifice.
+  /// InvalidPacking, if a grain of a running drainage has left the container other than through an outlet.
   void require_inside(const Grain& grain) const;
 
-  /// InvalidPacking, if a grain that is put in is neither inside nor in the opening above the outlet.
+  /// InvalidPacking, if a grain that is put in is neither inside nor in an opening above the height at which they are
+  /// taken out.
   void require_valid_place(const Grain& grain) const;
 
   /// How deep a grain overlaps a wall, in diameters, or 0. Held grains may be part of the walls, and there are none
-  /// below the orifice.
+  /// below the outlets.
   double depth_in_walls(const Grain& grain) const;
 
   /// InvalidPacking, if the grain (first) overlaps a wall more deeply than is allowed at the start.
@@ -54,11 +55,11 @@ class GrainChecks {
   /// CollapsedPacking, if they overlap more deeply than is allowed in flow.
   void require_no_collapse(const Overlap& largest) const;
 
-  /// CollapsedPacking, if one of them left through a wall instead of the orifice.
+  /// CollapsedPacking, if one of them left through a wall instead of an outlet.
   void require_left_through_orifice(const std::vector<Grain>& drained) const;
 
  private:
-  void require_inside(const Grain& grain, double lowest, double reach) const;
+  void require_inside(const Grain& grain, double lowest, double beside) const;
 
   DrainageLimits limits_;
   std::shared_ptr<const Container> container_;

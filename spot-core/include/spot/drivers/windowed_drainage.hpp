@@ -54,8 +54,8 @@ class WindowedDrainage : public Drainage {
   std::size_t memory() const override;
   Counters total() override;
 
-  /// How far the grains over the orifice go down in this time, on average (diameters).
-  static double flow_through_orifice(const SpotParameters& spots, double time, double diameter, double orifice_radius);
+  /// How far the grains over an outlet go down in this time, on average, where and when that is most (diameters).
+  static double flow_through_orifice(const SpotParameters& spots, double time, double diameter, const Outlets& outlets);
 
   /// Moves into a cell after which it is relaxed.
   double due() const { return due_; }

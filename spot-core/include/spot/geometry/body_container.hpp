@@ -9,26 +9,26 @@
 
 namespace spot {
 
-/// A container whose walls are the surface of one body, open at the orifice. Whatever the body has below the height of
-/// the orifice is no wall, and nothing passes that height beside the orifice.
+/// A container whose walls are the surface of one body, open at the outlets. Whatever the body has below their height
+/// is no wall, and nothing passes that height beside them.
 class BodyContainer : public Container {
  public:
-  BodyContainer(const Orifice& orifice, const SpotBuffers& buffers)
-      : orifice_(orifice), buffers_(buffers), base_(orifice) {}
+  BodyContainer(const Outlets& outlets, const SpotBuffers& buffers)
+      : outlets_(outlets), buffers_(buffers), base_(outlets) {}
 
-  const Orifice& orifice() const override { return orifice_; }
+  const Outlets& outlets() const override { return outlets_; }
   std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const override;
 
  private:
   /// The nearest wall within reach of a place.
   virtual std::optional<WallContact> nearest_wall(const Vector3& place, double reach) const = 0;
 
-  /// The first wall on a path whose ends are not below the orifice, but for rounding.
+  /// The first wall on a path whose ends are not below the outlets, but for rounding.
   virtual std::optional<WallOnPath> first_wall_above(const Vector3& from, const Vector3& to) const = 0;
 
   std::optional<Vector3> reflect_spot(const Vector3& start, const Vector3& target) const override;
 
-  Orifice orifice_;
+  Outlets outlets_;
   SpotBuffers buffers_;
   BasePlate base_;
 };

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "spot/base/vector.hpp"
-#include "spot/geometry/orifice.hpp"
+#include "spot/geometry/outlets.hpp"
 #include "spot/geometry/periodic.hpp"
 #include "spot/geometry/wall_contact.hpp"
 
 namespace spot {
 
-/// What holds the grains: walls near a point, the orifice, and where spots may go. z points up.
+/// What holds the grains: walls near a point, the outlets, and where spots may go. z points up.
 class Container {
  public:
   virtual ~Container() = default;
@@ -33,15 +33,18 @@ class Container {
   /// May several threads ask for contacts at the same time?
   virtual bool concurrent() const { return true; }
 
-  virtual const Orifice& orifice() const = 0;
+  virtual const Outlets& outlets() const = 0;
 
   /// Along which axes space repeats. All questions may be asked of places in any of its cells.
   virtual const Periodic& periodic() const;
 
-  /// May a grain that is here now, below the orifice, have come out of it? Else it went through a wall.
+  /// Is this place over or under an outlet, or no farther than `margin` beside it?
+  bool is_over_outlet(const Vector3& place, double margin = 0.0) const;
+
+  /// May a grain that is here now, below the outlets, have come out of one? Else it went through a wall.
   virtual bool may_have_left_to(const Vector3&) const { return true; }
 
-  /// The first wall on the straight path between two places. Below the height of the orifice there are none.
+  /// The first wall on the straight path between two places. Below the height of the outlets there are none.
   virtual std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const = 0;
 
   /// Where a spot at `start` that wants to step to `target` ends. The step is straight, and no wall lies across it:

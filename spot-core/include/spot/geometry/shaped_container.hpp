@@ -9,14 +9,14 @@
 
 namespace spot {
 
-/// A container that is the inside of a solid from the height of the orifice upwards: the solid is cut off there, and
-/// the flat base that this makes, if any, has the orifice as its hole. Distances are exact as those of Boundary with
-/// the radius of the orifice as its size. Any number of threads may ask.
+/// A container that is the inside of a solid from the height of the outlets upwards: the solid is cut off there, and
+/// the flat base that this makes, if any, has the outlets as its holes. Distances are exact as those of Boundary with
+/// the radius of the narrowest outlet as its size. Any number of threads may ask.
 class ShapedContainer : public BodyContainer {
  public:
-  /// Throws InvalidContainer unless the orifice's radius is positive and finite, the buffers are not negative, and all
-  /// of the orifice opens into the solid; and as Boundary does.
-  ShapedContainer(const Solid& solid, const Orifice& orifice, const SpotBuffers& buffers);
+  /// Throws InvalidContainer unless the buffers are not negative, and all of every outlet opens into the solid; and as
+  /// Boundary does.
+  ShapedContainer(const Solid& solid, const Outlets& outlets, const SpotBuffers& buffers);
 
   bool contains(const Vector3& centre) const override;
   void contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;
@@ -25,7 +25,7 @@ class ShapedContainer : public BodyContainer {
  private:
   std::optional<WallContact> nearest_wall(const Vector3& place, double reach) const override;
   std::optional<WallOnPath> first_wall_above(const Vector3& from, const Vector3& to) const override;
-  void require_mouth() const;
+  void require_mouth(const Outlet& outlet) const;
 
   Boundary boundary_;
 };

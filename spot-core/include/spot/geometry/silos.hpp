@@ -3,20 +3,20 @@
 
 #include <memory>
 
-#include "spot/geometry/orifice.hpp"
+#include "spot/geometry/outlets.hpp"
 #include "spot/geometry/spot_buffers.hpp"
 #include "spot/geometry/walled_container.hpp"
 
 namespace spot {
 
-/// A silo with four vertical plane walls and a flat base at the height of the orifice's centre.
-/// Throws InvalidContainer if the walls are in the wrong order or the orifice reaches beyond them.
+/// A silo with four vertical plane walls and a flat base at the height of the outlets.
+/// Throws InvalidContainer if the walls are in the wrong order or an outlet reaches beyond them.
 std::unique_ptr<WalledContainer> box_silo(double x_low, double x_high, double y_low, double y_high,
-                                          const Orifice& orifice, const SpotBuffers& buffers);
+                                          const Outlets& outlets, const SpotBuffers& buffers);
 
-/// A silo with an upright cylindrical wall and a flat base at the height of the orifice's centre.
-/// Throws InvalidContainer if the orifice reaches beyond the wall.
-std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius, const Orifice& orifice,
+/// A silo with an upright cylindrical wall and a flat base at the height of the outlets.
+/// Throws InvalidContainer if an outlet reaches beyond the wall.
+std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius, const Outlets& outlets,
                                                const SpotBuffers& buffers);
 
 }  // namespace spot

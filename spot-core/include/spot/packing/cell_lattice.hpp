@@ -117,8 +117,9 @@ class CellLattice {
  private:
   int held(int axis) const { return n_[static_cast<std::size_t>(axis)] + 2 * images_[static_cast<std::size_t>(axis)]; }
   void set_edge(std::size_t axis);
-  double end_of_cell(int cell, std::size_t axis, bool high) const;
-  int first_within(double from_low, int axis, bool with_images) const;
+  template <typename X, typename Y>
+  void find_rows(const Vector3& from_low, double reach, int first, int last, const X& along_x, const Y& along_y,
+                 std::vector<CellRow>& rows) const;
 
   double diameter_, extent_;
   Quantum quantum_;

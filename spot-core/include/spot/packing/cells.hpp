@@ -106,7 +106,8 @@ class Cells : public HeldCells {
     return lattice().from_low(point, lattice().cell(cell));
   }
   Vector3 position(std::uint32_t slot) const { return lattice().low() + from_low(points[slot], cell_of_[slot]); }
-  Grain grain(std::uint32_t slot) const;
+  Grain grain(std::uint32_t slot) const { return grain(slot, lattice().cell(cell_of(slot))); }
+  Grain grain(std::uint32_t slot, const Cell& listed_in) const;
   std::vector<std::int64_t> grains_in_own_layers() const;
   std::size_t memory() const;
 

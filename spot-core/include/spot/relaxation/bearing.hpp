@@ -8,25 +8,24 @@
 
 namespace spot {
 
-/// What bears the grains of a packing: neighbours, walls, the floor, and the packing's outflow over the orifice.
+/// What bears the grains of a packing: neighbours, walls, the floor, and the packing's outflow over the outlets.
 class Bearing {
  public:
   Bearing(const TiledPacking& packing, const Container& container)
       : packing_(packing), cells_(packing.cells()), container_(container) {}
 
-  /// Is there anybody lower nearby, a wall, or the orifice, who may bear this grain?
+  /// Is there anybody lower nearby, a wall, or an outlet, who may bear this grain?
   bool is_borne(std::uint32_t slot) const;
 
-  /// Does it lie on the floor, or on what stands in the orifice?
+  /// Does it lie on the floor, or on what stands in an outlet?
   bool is_on_floor(std::uint32_t slot) const;
 
-  /// Is this place no higher than `reach` (length) above the orifice? The packing there is borne by what flows out of
+  /// Is this place no higher than `reach` (length) above an outlet? The packing there is borne by what flows out of
   /// it, which is the spots' business.
-  bool is_over_orifice(const Vector3& place, double reach) const;
+  bool is_over_outlet(const Vector3& place, double reach) const;
 
-  /// How deep a grain here has sunk into the orifice, which is a floor until spots come, in its
-  /// diameters.
-  double depth_in_orifice(std::uint32_t slot) const;
+  /// How deep a grain here has sunk into an outlet, which is a floor until spots come, in its diameters.
+  double depth_in_outlet(std::uint32_t slot) const;
 
   /// Unit vectors from everything that a grain touches to the grain; of grains that come down, from those that rest, or
   /// only from those that lie (`least`).

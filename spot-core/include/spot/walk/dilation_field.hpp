@@ -22,10 +22,10 @@ namespace spot {
 /// A flow that brings more spots then has hardly more of them at a time, and starts narrow and fast, and widens as its
 /// sides dilate.
 ///
-/// Spots are counted on the nodes of a cubic lattice R_s apart, but no closer than grains are; each is shared out
-/// between the eight nodes around it in proportion to its nearness to them along each axis, in whole 2^-24ths: sums are
-/// the same on any ranks. Where space repeats, so does the lattice: its spacing along that axis is the least from R_s
-/// on of which the period is a multiple.
+/// Spots are counted on the nodes of a cubic lattice, of which one is the centre of the first outlet, R_s apart, but no
+/// closer than grains are; each is shared out between the eight nodes around it in proportion to its nearness to them
+/// along each axis, in whole 2^-24ths: sums are the same on any ranks. Where space repeats, so does the lattice: its
+/// spacing along that axis is the least from R_s on of which the period is a multiple.
 class DilationField {
  public:
   /// `diameter`: of grains. The container must outlive the field, or be replaced.
@@ -35,7 +35,7 @@ class DilationField {
   void count(const std::vector<Vector3>& spots, Communicator& communicator);
 
   /// The share of the volume around a point that spots take (dimensionless). Infinite where walls leave no volume, as
-  /// below the orifice.
+  /// below the outlets.
   double at(const Vector3& point) const;
 
   /// The speed of a spot there, over v_s.

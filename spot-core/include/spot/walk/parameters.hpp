@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "spot/walk/influence_profile.hpp"
+#include "spot/walk/injection.hpp"
 
 namespace spot {
 
@@ -16,7 +17,7 @@ struct SpotParameters {
   double step_width = 0.0;      ///< dx: a step goes by +-dx along x or along y (length)
   double step_height = 0.0;     ///< dz: and by dz upwards (length)
   double speed = 0.0;           ///< v_s: mean drift speed of a spot (length / time)
-  double injection_rate = 0.0;  ///< nu_s: births per time (1 / time)
+  Injection injection_rate = 0.0;  ///< nu_s: births per time at each outlet (1 / time)
   /// N: a spot always carries the free volume of w N grains of the reference diameter, whatever volume it encloses, of
   /// which each grain's counts by its share of the influence (2010's fixed-volume weighting). In grain volumes.
   /// 0: every grain it encloses moves by -w dr (2006).

@@ -23,16 +23,18 @@ struct Spot {
 /// How spots are born and walk. Walks do not look at grains, and there is no state but the spot: all draws follow from
 /// (seed, spot id, step number).
 ///
-/// A spot is born uniformly on the disc of the orifice's radius less R_s, and R_s below the orifice: it
-/// enters the packing with its whole influence, so that as much leaves through the orifice as the spot
+/// A spot is born uniformly on what is R_s inside the rim of an outlet, and R_s below it: it
+/// enters the packing with its whole influence, so that as much leaves through the outlet as the spot
 /// brings down through any height above (volume closes; see docs/notes).
 class SpotWalk {
  public:
-  /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
+  /// Throws InvalidParameter, also if rates of injection are not for as many outlets as the container has, or
+  /// InvalidContainer if the spots cannot enter.
   SpotWalk(const SpotParameters& parameters, const Container& container);
 
-  /// Time from the birth before it, or from time 0, to the birth of spot `id`: births are Poisson at rate nu_s.
-  double time_before_birth(std::int64_t id) const;
+  /// When spot `id` is born, after the birth before it or after time 0: births are Poisson at rate nu_s. Infinite if
+  /// there are none any more.
+  double time_of_birth(std::int64_t id, double time_before) const;
 
   Spot birth(std::int64_t id, double time, const Container& container) const;
 

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/geometry/slot.hpp"
+
+#include <algorithm>
+
+#include "geometry/directions.hpp"
+#include "geometry/length.hpp"
+#include "spot/geometry/shapes.hpp"
+
+namespace spot {
+
+Slot::Slot(double x_width, double y_width) : half_(0.5 * x_width, 0.5 * y_width, 0.0) {
+  require_positive(x_width, "the width of the slot along x");
+  require_positive(y_width, "the width of the slot along y");
+}
+
+std::string Slot::name() const { return message("slot of ", 2.0 * half_.x(), " by ", 2.0 * half_.y()); }
+
+double Slot::distance(const Vector3& place) const {
+  const double x = std::abs(place.x()) - half_.x(), y = std::abs(place.y()) - half_.y();
+  return x > 0.0 && y > 0.0 ? length(x, y) : std::max(x, y);
+}
+
+Vector3 Slot::to_rim(const Vector3& place) const {
+  const int axis = std::abs(place.x()) - half_.x() >= std::abs(place.y()) - half_.y() ? 0 : 1;
+  if (place[axis] == 0.0) return Vector3::Zero();
+  return std::copysign(1.0, place[axis]) * Vector3::Unit(axis);
+}
+
+Vector3 Slot::keep_inside(double margin, const Vector3& place) const {
+  Vector3 inside = place;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double limit = std::max(0.0, half_[axis] - margin), off = std::abs(place[axis]);
+    if (off > limit) inside[axis] = std::copysign(std::max(0.0, 2.0 * limit - off), place[axis]);
+  }
+  return inside;
+}
+
+Vector3 Slot::point(double margin, double first, double second) const {
+  return {(2.0 * first - 1.0) * std::max(0.0, half_.x() - margin),
+          (2.0 * second - 1.0) * std::max(0.0, half_.y() - margin), 0.0};
+}
+
+double Slot::widest_radius() const { return std::min(half_.x(), half_.y()); }
+
+double Slot::equivalent_radius() const {
+  constexpr double pi = 3.14159265358979323846;
+  return std::sqrt(4.0 * half_.x() * half_.y() / pi);
+}
+
+double Slot::farthest(const Vector3& place) const {
+  return length(std::abs(place.x()) + half_.x(), std::abs(place.y()) + half_.y());
+}
+
+Solid Slot::column(const Vector3& centre) const {
+  const auto side = [&](const Vector3& out) { return half_space(centre + half_.cwiseProduct(out), -out); };
+  return side(Vector3::UnitX()) & side(-Vector3::UnitX()) & side(Vector3::UnitY()) & side(-Vector3::UnitY());
+}
+
+}  // namespace spot
