@@ -343,7 +343,7 @@ TEST(ContainerBruteForce, RepeatedWallsAreTheSameInEveryCell) {
 }
 
 TEST(ContainerUnit, RefusesWallsAcrossAPeriodAndOrificesBeyondIt) {
-  spot::WalledContainer silo({{0, 0, 0}, 2.0});
+  spot::WalledContainer silo(spot::Orifice{{0, 0, 0}, 2.0});
   EXPECT_THAT(scenes::text_of<InvalidContainer>([&] {
                 silo.repeat({spot::Interval{-1.9, 5.0}, {}});
               }),
