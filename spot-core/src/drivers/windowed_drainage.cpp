@@ -56,9 +56,8 @@ void WindowedDrainage::require_fitting_window() const {
   require(highest, highest_climb, "diameters are climbed by spots");
   require(clock * spot_parameters().fastest() / spot_parameters().step_height, most_steps, "steps are taken by a spot");
   require(clock * spot_parameters().injection_rate.largest(), most_births, "spots are born");
-  require(
-      flow_through_orifice(spot_parameters(), clock, diameter(), container().outlets()),
-      calibration::longest_flow_in_a_window, "diameters pass the orifice");
+  require(flow_through_orifice(spot_parameters(), clock, diameter(), container().outlets()),
+          calibration::longest_flow_in_a_window, "diameters pass the orifice");
 }
 
 double WindowedDrainage::moves_between_sweeps_for(const SpotParameters& spots, double tolerance, double diameter) {
@@ -179,7 +178,7 @@ void WindowedDrainage::relax() {
     overlap = std::max(overlap, relaxation_.largest_overlap());
   }
   // Sweeps see no other cells than those that they sweep.
-  if (overlap > limits().overlap_allowed() || windows_ % calibration::windows_between_looks == 0)
+  if (overlap > limits().overlap_allowed() || windows_ % calibration::windows_between_checks == 0)
     checks().require_no_collapse(packing_.largest_overlap());
 }
 
