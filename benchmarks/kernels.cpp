@@ -215,16 +215,16 @@ void farthest(benchmark::State& state, const Kernels& kernels) {
   }
 }
 
-/// The accounts of all cells, of which one in ten is due.
+/// The unrelaxed moves of all cells, of which one in ten has to be swept.
 void find_reached(benchmark::State& state, const Kernels& kernels) {
-  std::vector<std::int32_t> accounts(tiles().points.size() / Tiles::slots);
-  for (std::size_t k = 0; k < accounts.size(); ++k) accounts[k] = k % 10 == 0 ? 9 : 1;
-  std::vector<std::uint32_t> found(accounts.size());
+  std::vector<std::int32_t> unrelaxed(tiles().points.size() / Tiles::slots);
+  for (std::size_t k = 0; k < unrelaxed.size(); ++k) unrelaxed[k] = k % 10 == 0 ? 9 : 1;
+  std::vector<std::uint32_t> found(unrelaxed.size());
   for (auto _ : state) {
-    benchmark::DoNotOptimize(kernels.find_reached(accounts.data(), accounts.size(), 9, found.data()));
+    benchmark::DoNotOptimize(kernels.find_reached(unrelaxed.data(), unrelaxed.size(), 9, found.data()));
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(accounts.size()));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(unrelaxed.size()));
 }
 
 // ---- moves and sweeps, with the instruction set that SPOT_INSTRUCTION_SET names, or the best

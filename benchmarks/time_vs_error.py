@@ -233,7 +233,7 @@ def benchmark(options, work):
     say(f"{len(chosen)} settings, {options.seeds} seed(s), {options.warm_up:g} to {options.warm_up + options.measure:g} tau "
         f"(less for the slow ones), {options.jobs} at a time")
     points = measure_all(chosen, options, work)
-    print(f"Per simulated second: processor s, wall s, relaxations (of one region, or of all that was due). Mean of {options.seeds} "
+    print(f"Per simulated second: processor s, wall s, relaxations (of one region, or of all cells that need one). Mean of {options.seeds} "
           "seed(s); errors are differences to DEM in the same interval", HEADER, *map(line, points), *table_2010(points), sep="\n")
     warn_of_others({one["setting"]: one["others"] - (options.jobs - 1) for one in points})
     about = provenance()

@@ -59,7 +59,7 @@ def test_largest_overlap(drained):
 def test_moves_and_sweeps(drained):
     log, _, spots = drained
     assert (np.diff(log[MOVES]) >= 0).all() and (np.diff(log[SWEEPS]) >= 0).all() and log[SWEEPS][-1] > 30
-    # None has reached the top yet: every step that was ever taken is still on the account of a spot.
+    # None has reached the top yet: every step that was ever taken is still counted by a spot.
     taken = [frame["f_drain[5]"].sum() for _, frame in spots]
     assert log[MOVES][:20] == pytest.approx(taken[:20])
 

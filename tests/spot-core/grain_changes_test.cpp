@@ -158,7 +158,7 @@ TEST(GrainChangesInvariance, WhoeverLosesItsGroundOnAnotherRankComesDown) {
   EXPECT_TRUE(rest(6) == alone);
 }
 
-/// Momenta and accounts of all others stay: a grain that lies where nobody comes by changes nothing when it goes.
+/// Last corrections and counts of unrelaxed moves of all others stay: a grain that lies where nobody comes by changes nothing when it goes.
 TEST(GrainChangesInvariance, OthersGoOnAsIfNothingHadHappened) {
   auto grains = filling();
   const Grain far{77777, {5.5, 3.5, 60.0}, true}, near{77778, {-5.5, 3.5, 50.0}, true};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What has to hold of every packing that drains, found without the lists and accounts of the drivers.
+// What has to hold of every packing that drains, found without the lists and counts of the drivers.
 #pragma once
 
 #include <algorithm>

@@ -170,11 +170,11 @@ struct Listed {
 
   spot::kernels::Lists lists() const { return {neighbours.data(), blocks.data(), sizes.data()}; }
 
-  /// Half of the free grains are due.
+  /// Half of the free grains are swept.
   std::vector<Point> pushes(const Kernels& build) const {
     auto marked = points;
     for (std::size_t i = 0; i < marked.size(); i += 2)
-      if (marked[i].state == Point::free) marked[i].state = Point::due;
+      if (marked[i].state == Point::free) marked[i].state = Point::swept;
     std::vector<Point> all(grains.size());
     auto padded = grains;
     padded.resize(grains.size() + spot::kernels::ahead, 0);
@@ -225,7 +225,7 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
     EXPECT_EQ(pushes[0].x, -pushes[1].x) << "action is reaction";
     EXPECT_EQ(pushes[0].y, -pushes[1].y);
     EXPECT_EQ(pushes[0].z, -pushes[1].z);
-    points[1].state = Point::due;
+    points[1].state = Point::swept;
     std::vector<Point> half(2);
     base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), blocks.data(), sizes.data()},
                              {per_square, 0.2f, 0.4f}, half.data());
@@ -246,7 +246,7 @@ struct Correcting {
     const auto whole = [&draws](double most) { return static_cast<std::int32_t>(draws.uniform(-most, most)); };
     for (std::uint32_t i = 0; i < n; ++i) {
       grains.push_back(3 * i + 1);
-      points[grains[i]].state = Point::due;
+      points[grains[i]].state = Point::swept;
       last[grains[i]] = {whole(1e5), whole(1e5), whole(1e5), 0};
       const auto depth = static_cast<float>(draws.uniform(0.0, 0.1));
       pushes.push_back({whole(1e6), whole(1e6), whole(1e6), 0});

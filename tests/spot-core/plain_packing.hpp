@@ -68,15 +68,15 @@ class PlainPacking {
     sweep(parameters, [](std::int64_t) { return true; });
   }
 
-  /// Over those of them for which due(id) holds.
-  template <typename Due>
-  void sweep(const spot::RelaxationParameters& parameters, const Due& due) {
-    for (Body& body : bodies_) body.due = !body.held && due(body.id);
+  /// Over those of them for which is_swept(id) holds.
+  template <typename IsSwept>
+  void sweep(const spot::RelaxationParameters& parameters, const IsSwept& is_swept) {
+    for (Body& body : bodies_) body.swept = !body.held && is_swept(body.id);
     std::vector<Place> pushes;
-    for (const Body& body : bodies_) pushes.push_back(body.due ? push_on(body, parameters) : Place{0, 0, 0});
+    for (const Body& body : bodies_) pushes.push_back(body.swept ? push_on(body, parameters) : Place{0, 0, 0});
     const auto momentum = static_cast<float>(parameters.momentum);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      if (!bodies_[i].due) continue;
+      if (!bodies_[i].swept) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto carried = static_cast<std::int64_t>(momentum * static_cast<float>(bodies_[i].last[axis]));
         bodies_[i].last[axis] = pushes[i][axis] + carried;
@@ -108,7 +108,7 @@ class PlainPacking {
     bool held;
     Place at, last;
     double radius;
-    bool due = false;
+    bool swept = false;
   };
 
   float squared_distance(const Body& body, const spot::Move& move) const {
@@ -174,7 +174,7 @@ class PlainPacking {
       const auto [x, y, z] = differences(own.at, other.at);
       const float s = overlap((x * x + y * y) + z * z, own, other, parameters.contact_overlap);
       if (!(s > 0.0f)) continue;
-      const auto share = static_cast<float>(other.due ? parameters.pair_share() : parameters.fixed_share());
+      const auto share = static_cast<float>(other.swept ? parameters.pair_share() : parameters.fixed_share());
       const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
       add({static_cast<std::int64_t>(scale * x), static_cast<std::int64_t>(scale * y),
            static_cast<std::int64_t>(scale * z)});

@@ -85,8 +85,8 @@ void follow(Drainage& drainage, double end) {
   invariants::Ledger ledger(drainage.grains(), 1.0, limits, *container);
   std::array<int, 2> drained = {0, 0}, drained_then = {0, 0};
   int passed_then = 0;  // through the slot, whether taken out by then or not
-  const int looks = static_cast<int>(end / window + 0.5);
-  for (int k = 1; k <= looks; ++k) {
+  const int windows = static_cast<int>(end / window + 0.5);
+  for (int k = 1; k <= windows; ++k) {
     const double time = k * window;
     std::map<std::int64_t, Grain> left;
     for (const Grain& grain : drainage.grains()) left.emplace(grain.id, grain);

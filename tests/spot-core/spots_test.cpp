@@ -402,16 +402,16 @@ TEST(SpotsStatistical, DilatedPackingsCarrySpotsFaster) {
   for (const double c_0 : {0.0, 0.03, 0.06}) {
     parameters.dilation = c_0;
     Spots population(parameters, *shaft, 1.0);
-    double sum = 0.0, looks = 0.0;
+    double sum = 0.0, samples = 0.0;
     for (double time = 1.0; time <= 60.0; time += 1.0) {
       while (const auto move = population.next_step(time, *shaft))
         if (end_of(*move).z() > 60.0) population.remove(move->spot);
       if (time < 40.0) continue;
       for (const Spot& spot : population.live()) sum += spot.position.z() >= low && spot.position.z() < high;
-      ++looks;
+      ++samples;
     }
     const double volume = parameters.missing_volume(1.0), area = 4.0 * half * half;
-    const double c = sum / looks * volume / (area * (high - low));
+    const double c = sum / samples * volume / (area * (high - low));
     const double flux = parameters.injection_rate.largest() * volume / area;
     const double expected = c_0 > 0.0 ? std::cbrt(flux * c_0 * c_0 / parameters.speed) : flux / parameters.speed;
     // Half a per cent is what the births of 20 tau scatter by; counting noise makes spots a little faster.

@@ -358,7 +358,7 @@ TEST(TiledPackingBruteForce, ASweepOfSomeCellsEqualsThePlainOne) {
     const auto pushed_in_all = all.grains();
     const std::size_t swept = spot::CellRelaxation(tiled, relaxation).sweep(1, 1.0, *silo, workers);
     const auto after = sorted_grains(tiled);
-    // Grains that are due and overlap nobody stay where they are, too, but then they push nobody either.
+    // Grains that are swept and overlap nobody stay where they are, too, but then they push nobody either.
     std::set<std::int64_t> pushed;
     for (std::size_t i = 0; i < after.size(); ++i) {
       const bool goes = after[i].position != before[i].position;
@@ -449,7 +449,7 @@ TEST(TiledPackingBruteForce, ACellThatOverflowsInFlowIsMadeLarger) {
   EXPECT_GT(tiled.memory(), memory) << "no cell overflowed, so this tested nothing";
 }
 
-TEST(TiledPackingUnit, SweepsOnlyCellsThatAreDue) {
+TEST(TiledPackingUnit, SweepsOnlyCellsWithEnoughUnrelaxedMoves) {
   const auto silo = scenes::small_silo(6.0, 4.0);
   TiledPacking packing(1.0, 100.0, -1.0, scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7), *silo);
   Workers workers(1);
@@ -462,36 +462,36 @@ TEST(TiledPackingUnit, SweepsOnlyCellsThatAreDue) {
   const std::size_t swept = spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers);
   EXPECT_GT(swept, 80u);
   EXPECT_LT(swept, packing.size() / 2);
-  EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers), 0u) << "the accounts are settled";
+  EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers), 0u) << "no move is left unrelaxed";
 }
 
-TEST(TiledPackingUnit, ASweepPaysForAsManyMovesAsMakeItDue) {
+TEST(TiledPackingUnit, ASweepTakesOffAsManyMovesAsItIsMadeFor) {
   const auto silo = scenes::small_silo(6.0, 4.0);
   TiledPacking packing(1.0, 100.0, -1.0, scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7), *silo);
   Workers workers(1);
   std::vector<int> moved;
-  for (const int due : {1, 2, 3, 7}) {
-    // Of 14 moves one after the other, some paid for together.
+  for (const int moves : {1, 2, 3, 7}) {
+    // Of 14 moves one after the other, some relaxed together.
     for (int k = 0; k < 14; ++k)
       moved = carry_out(packing, one_move({0, 0, 5}, {0.7, 0, 0.1}), {2.6, 1e-5}, *silo, workers);
     std::size_t swept = 0;
-    for (int sweep = 0; sweep < 14 / due; ++sweep) {
-      const std::size_t now = spot::CellRelaxation(packing, {}).sweep(due, 1.0, *silo, workers);
-      EXPECT_GT(now, 0u) << due << " moves make a cell due, sweep " << sweep;
+    for (int sweep = 0; sweep < 14 / moves; ++sweep) {
+      const std::size_t now = spot::CellRelaxation(packing, {}).sweep(moves, 1.0, *silo, workers);
+      EXPECT_GT(now, 0u) << moves << " moves are enough, sweep " << sweep;
       if (sweep > 0) {
         EXPECT_EQ(now, swept);
       }
       swept = now;
     }
-    EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(due, 1.0, *silo, workers), 0u);
-    if (14 % due > 0) {
-      EXPECT_GT(spot::CellRelaxation(packing, {}).sweep(14 % due, 1.0, *silo, workers), 0u) << "what is left over";
+    EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(moves, 1.0, *silo, workers), 0u);
+    if (14 % moves > 0) {
+      EXPECT_GT(spot::CellRelaxation(packing, {}).sweep(14 % moves, 1.0, *silo, workers), 0u) << "what is left over";
     }
-    EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(1, 1.0, *silo, workers), 0u) << due;
+    EXPECT_EQ(spot::CellRelaxation(packing, {}).sweep(1, 1.0, *silo, workers), 0u) << moves;
   }
 }
 
-TEST(TiledPackingUnit, DeepOverlapsKeepACellDue) {
+TEST(TiledPackingUnit, ACellWithDeepOverlapsIsSweptAgain) {
   const auto space = scenes::empty_space();
   TiledPacking packing(1.0, 100.0, 0.0, {{1, {1, 1, 1}}, {2, {1.9, 1, 1}}}, *space);
   Workers workers(1);

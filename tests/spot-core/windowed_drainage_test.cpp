@@ -395,8 +395,8 @@ TEST(WindowedDrainageUnit, ASmallerToleranceSweepsMore) {
   WindowedDrainage often = drainage_of(filling(10.0), scenes::paper_spots(), fine);
   WindowedDrainage seldom = drainage_of(filling(10.0), scenes::paper_spots(), coarse);
   const double displacement = 2.5e-3 * 0.68;  // w dx
-  EXPECT_NEAR(often.due(), 12.0 * 1e-6 / (displacement * displacement), 1.0);
-  EXPECT_NEAR(seldom.due(), 12.0 * 16e-6 / (displacement * displacement), 1.0);
+  EXPECT_NEAR(often.moves_between_sweeps(), 12.0 * 1e-6 / (displacement * displacement), 1.0);
+  EXPECT_NEAR(seldom.moves_between_sweeps(), 12.0 * 16e-6 / (displacement * displacement), 1.0);
   often.advance_to(3.0);
   seldom.advance_to(3.0);
   EXPECT_GT(often.counters().grains_swept, 2 * seldom.counters().grains_swept);

@@ -68,21 +68,21 @@ std::unique_ptr<spot::Drainage> Scene::start() const {
 namespace {
 
 void follow(const Scene& scene, spot::Drainage& drainage, Outcome& outcome) {
-  constexpr int looks = 20;
+  constexpr int checks = 20;
   const auto silo = scene.silo();
   invariants::Ledger ledger(scene.grains, scene.diameter, scene.limits(), *silo);
-  for (int k = 1; k <= looks; ++k) {
-    drainage.advance_to(scene.time * k / looks);
+  for (int k = 1; k <= checks; ++k) {
+    drainage.advance_to(scene.time * k / checks);
     drainage.require_inside();  // as the fix does
     const std::string wrong = ledger.check(drainage);
     if (!wrong.empty()) outcome.text = wrong;
     outcome.counters = drainage.counters();
     outcome.last = ledger.overlaps();
-    if (scene.placed_by_hand && k <= looks / 2) continue;
+    if (scene.placed_by_hand && k <= checks / 2) continue;
     outcome.largest.largest = std::max(outcome.largest.largest, outcome.last.largest);
     outcome.largest.badness = std::max(outcome.largest.badness, outcome.last.badness);
   }
-  // The windowed driver looks at all grains every 64 windows: it has this time to find out by itself.
+  // The windowed driver checks all grains every 64 windows: it has this time to find out by itself.
   if (outcome.largest.largest > overlap_bound) drainage.advance_to(scene.time + 65.0 * scene.window);
   if (outcome.text.empty() && outcome.largest.largest > overlap_bound)
     outcome.text = spot::message("overlap of ", outcome.largest.largest, " d");

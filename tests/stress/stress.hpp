@@ -63,7 +63,7 @@ struct Outcome {
 /// No two grains of a valid packing overlap more deeply, in diameters.
 constexpr double overlap_bound = 0.3;
 
-/// Drains the scene, looks at it 20 times and judges it.
+/// Drains the scene, checks it 20 times and judges it.
 Outcome drain(const Scene& scene);
 
 /// A line of the table: what was tried, and what became of it.

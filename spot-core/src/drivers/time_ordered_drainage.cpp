@@ -118,7 +118,7 @@ bool TimeOrderedDrainage::relaxes_around(const Move& move) const {
 void TimeOrderedDrainage::relax(const std::vector<std::uint32_t>& grains) {
   const double deepest = relaxation_.sweep(packing_, container(), grains);
   count_sweep(grains.size());
-  if (!relaxes_every_move() || deepest <= calibration::part_of_overlap_to_look_from * limits().overlap_allowed())
+  if (!relaxes_every_move() || deepest <= calibration::part_of_overlap_to_check_from * limits().overlap_allowed())
     return;
   packing_.update_lists(container());
   checks().require_no_collapse(packing_.largest_overlap(grains));

@@ -56,12 +56,11 @@ void WindowedDrainage::require_fitting_window() const {
   require(highest, highest_climb, "diameters are climbed by spots");
   require(clock * spot_parameters().fastest() / spot_parameters().step_height, most_steps, "steps are taken by a spot");
   require(clock * spot_parameters().injection_rate.largest(), most_births, "spots are born");
-  require(
-      flow_through_orifice(spot_parameters(), clock, diameter(), container().outlets()),
-      calibration::longest_flow_in_a_window, "diameters pass the orifice");
+  require(flow_through_orifice(spot_parameters(), clock, diameter(), container().outlets()),
+          calibration::longest_flow_in_a_window, "diameters pass the orifice");
 }
 
-double WindowedDrainage::moves_until_due(const SpotParameters& spots, double tolerance, double diameter) {
+double WindowedDrainage::moves_between_sweeps_for(const SpotParameters& spots, double tolerance, double diameter) {
   if (!(tolerance > 0.0) || !std::isfinite(tolerance))
     throw InvalidParameter(message("relaxation tolerance is ", tolerance, " but must be positive and finite"));
   const double displacement = spots.influence * spots.step_width;
@@ -86,7 +85,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       communicator_(std::move(communicator)),
       workers_(std::make_unique<Workers>(threads)),
       window_(positive_window(window)),
-      due_(moves_until_due(spots, relaxation.tolerance, diameter)),
+      moves_between_sweeps_(moves_between_sweeps_for(spots, relaxation.tolerance, diameter)),
       spots_(spots, Drainage::container(), diameter),
       packing_(diameter, extent, limits.outlet, grains, Drainage::container(), communicator_),
       relaxation_(packing_, relaxation),
@@ -173,13 +172,13 @@ void WindowedDrainage::relax() {
   double overlap = 0.0;
   for (int sweep = 0; sweep < calibration::most_sweeps_in_a_window; ++sweep) {
     const double deepest = sweep == 0 ? calibration::overlap_relaxed_again : std::numeric_limits<double>::infinity();
-    const std::size_t swept = relaxation_.sweep(due_, deepest, container(), *workers_);
+    const std::size_t swept = relaxation_.sweep(moves_between_sweeps_, deepest, container(), *workers_);
     if (swept == 0) break;
     count_sweep(swept);
     overlap = std::max(overlap, relaxation_.largest_overlap());
   }
-  // Sweeps do not see cells that are not due.
-  if (overlap > limits().overlap_allowed() || windows_ % calibration::windows_between_looks == 0)
+  // Sweeps see no other cells than those that they sweep.
+  if (overlap > limits().overlap_allowed() || windows_ % calibration::windows_between_checks == 0)
     checks().require_no_collapse(packing_.largest_overlap());
 }
 

@@ -50,7 +50,7 @@ struct Kernels {
   void (*displace)(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by);
 
   /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
-  /// the line of centres for r < d, each component cut to whole quanta; the pair's share if the neighbour is due, the
+  /// the line of centres for r < d, each component cut to whole quanta; the pair's share if the neighbour is swept, the
   /// fixed one if not. (d - r) / r is expanded in s = 1 - r^2/d^2, good to 1e-4 of itself for overlaps up to 0.05 d;
   /// deeper ones are pushed apart by somewhat less, which another sweep makes good.
   void (*push_off_neighbours)(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
@@ -63,8 +63,8 @@ struct Kernels {
                                       std::size_t n, const Lists& lists, const UnequalPush& push, Point* pushes);
 
   /// Corrects the grains of some cells, one cell after the other, `in_cell` of them in each: a grain moves by its push
-  /// and by the part `kept` of its last correction, cut to whole quanta, and remembers that as its last. It is not due
-  /// any more.
+  /// and by the part `kept` of its last correction, cut to whole quanta, and remembers that as its last. It is free
+  /// from then on.
   void (*correct)(Point* points, Point* last, const std::uint32_t* grains, const std::uint8_t* in_cell,
                   std::size_t cells, const Point* pushes, float kept, Corrections* corrections);
 

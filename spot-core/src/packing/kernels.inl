@@ -71,7 +71,7 @@ void push_off(const Point* points, const std::uint32_t* grains, std::size_t n, c
                   dz = static_cast<float>(own.z - other.z);
       const float s = radii.overlap((dx * dx + dy * dy) + dz * dz, grains[i], list[k]);
       if (!(s > 0.0f)) continue;
-      const float share = other.state == Point::due ? shares.pair_share : shares.fixed_share;
+      const float share = other.state == Point::swept ? shares.pair_share : shares.fixed_share;
       const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
       add(sum, static_cast<std::int32_t>(scale * dx), static_cast<std::int32_t>(scale * dy),
           static_cast<std::int32_t>(scale * dz));
@@ -379,8 +379,8 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
       const Pack ab = low(a, b), cd = low(c, d);
       const Floats dx = floats(x - low_pairs(ab, cd)), dy = floats(y - high_pairs(ab, cd)),
                    dz = floats(z - low_pairs(high(a, b), high(c, d)));
-      const Pack is_due = high_pairs(high(a, b), high(c, d)) == Point::due;
-      const Floats share = (Floats)((is_due & pair_share) | (~is_due & fixed_share));
+      const Pack is_swept = high_pairs(high(a, b), high(c, d)) == Point::swept;
+      const Floats share = (Floats)((is_swept & pair_share) | (~is_swept & fixed_share));
       const Floats apart = 1.0f - ((dx * dx + dy * dy) + dz * dz) * per_square;
       const Pack listed = numbers < size - k;
       const Floats s = (Floats)((Pack)(apart > zero ? apart : zero) & listed);

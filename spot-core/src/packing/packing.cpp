@@ -94,14 +94,14 @@ void Packing::find_movable(const Vector3& point, double reach, std::vector<std::
   found.resize(n);
 }
 
-void Packing::list_wandered(const Container& container) {
-  for (const std::uint32_t i : wandered_) {
+void Packing::list_drifted(const Container& container) {
+  for (const std::uint32_t i : drifted_) {
     if (!present(i)) continue;
     unlist(i);
     list(i, container);
   }
-  listed_since_sort_ += wandered_.size();
-  wandered_.clear();
+  listed_since_sort_ += drifted_.size();
+  drifted_.clear();
 }
 
 void Packing::sort(const Container& container) {
@@ -139,7 +139,7 @@ void Packing::sort(const Container& container) {
   neighbours_.assign(n * list_capacity_, 0);
   // Every pair is found by the later of the two, when the earlier is in its cell already.
   for (std::uint32_t i = 0; i < n; ++i) list(i, container);
-  wandered_.clear();
+  drifted_.clear();
   listed_since_sort_ = 0;
   sort_after_ = 2 * n + 1;  // grains that are near in space stay near in memory
 }
@@ -228,7 +228,7 @@ Overlap Packing::largest_overlap(const std::vector<std::uint32_t>& grains) const
 
 std::size_t Packing::memory() const {
   return bytes_in(ids_, x_, y_, z_, radii_, volumes_, reference_x_, reference_y_, reference_z_, held_, near_wall_,
-                  cell_, neighbours_, list_size_, wandered_) +
+                  cell_, neighbours_, list_size_, drifted_) +
          grid_.memory();
 }
 

@@ -9,7 +9,7 @@
 
 namespace spot {
 
-/// A grain; its cell, of the whole lattice, tells which turn of the wrapped coordinates is meant.
+/// A grain; its cell, of the whole lattice, tells how often the wrapped coordinates have wrapped around.
 struct SavedGrain {
   std::int64_t id, cell;
   Point point, reference, correction;

@@ -225,7 +225,7 @@ void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {
 }
 
 /// The kernel tells how deep each grain overlaps any other, in single precision; only those that may be the deepest so
-/// far are looked at closely.
+/// far are measured in double precision.
 Overlap TiledPacking::largest_overlap() const {
   constexpr std::uint32_t at_a_time = 1024;
   constexpr double precision = 1e-5;
@@ -235,7 +235,7 @@ Overlap TiledPacking::largest_overlap() const {
   Overlap largest;
   double least = square(diameter);
   std::uint32_t n = 0;
-  const auto look = [&] {
+  const auto measure = [&] {
     push_off_neighbours(kernels_, cells_, lists_, grains.data(), n, {0.0, 0.0, 0.0}, pushes.data());
     for (std::uint32_t k = 0; k < n; ++k)
       if (depth_of(pushes[k]) > 1.0 - least * per_square - precision) find_larger_overlap(grains[k], least, largest);
@@ -243,9 +243,9 @@ Overlap TiledPacking::largest_overlap() const {
   };
   cells_.visit_own([&](std::uint32_t slot) {
     grains[n++] = slot;
-    if (n == at_a_time) look();
+    if (n == at_a_time) measure();
   });
-  look();
+  measure();
   return largest;
 }
 

@@ -13,7 +13,7 @@ namespace {
 /// does alone between two jobs, since waking up takes longer than most jobs.
 constexpr int rounds_awake = 200000;
 
-/// Between two looks, so that the look costs the other threads of the same core, and the bus, little; now and then
+/// Between two checks, so that a check costs the other threads of the same core, and the bus, little; now and then
 /// other programs have their turn, in case there are more threads than processors.
 void rest(int round) {
 #ifdef __x86_64__

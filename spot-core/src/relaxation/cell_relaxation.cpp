@@ -30,7 +30,7 @@ std::size_t CellRelaxation::sweep(double moves, double deepest, const Container&
   const auto task_of = [this](int worker) -> Task& { return tasks_[static_cast<std::size_t>(worker)]; };
   workers.run([&](int worker) { collect(task_of(worker)); });
   packing_.ghosts().send_positions_of_unrelaxed(parts);
-  set_ghosts(Point::free, Point::due, parts);
+  set_ghosts(Point::free, Point::swept, parts);
   const PushStrength strength = {parameters_.contact_overlap, parameters_.pair_share(), parameters_.fixed_share()};
   const auto ask_container = [&](Task& task) {
     add_pushes_of_other_walls(packing_, strength.fixed_share, container, task.grains);
@@ -43,7 +43,7 @@ std::size_t CellRelaxation::sweep(double moves, double deepest, const Container&
     for (Task& of_worker : tasks_) ask_container(of_worker);
   // 1 - r^2/d^2 is twice the overlap beyond that in contact, in diameters, to first order.
   workers.run([&](int worker) { correct(task_of(worker), parts, static_cast<float>(2.0 * deepest)); });
-  set_ghosts(Point::due, Point::free, parts);
+  set_ghosts(Point::swept, Point::free, parts);
   packing_.update_lists(container, workers);
   return sum_up();
 }
@@ -86,7 +86,7 @@ void CellRelaxation::collect(Task& task) {
       // Without branches, which no processor could foresee.
       std::int32_t& state = cells.points[slot].state;
       const bool is_free = state == Point::free;
-      state = is_free ? Point::due : state;
+      state = is_free ? Point::swept : state;
       task.grains.slots[n] = slot;
       n += is_free ? 1 : 0;
     }

@@ -240,8 +240,8 @@ void Settling::take_along_neighbours() {
     if (cells_.points[slot].state == Point::laid) find(slot);
   });
   for (const std::uint32_t slot : found) falling_.push_back(cells_.place_of(slot));
-  for (const Place& place : falling_) set_state(cells_.slot(place), Point::due);
-  keep(falling_, Point::due, Point::due);
+  for (const Place& place : falling_) set_state(cells_.slot(place), Point::swept);
+  keep(falling_, Point::swept, Point::swept);
   packing_.ghosts().send_no_positions();
   packing_.ghosts().exchange(container_);
 }
@@ -276,7 +276,7 @@ double Settling::part_laid(double down) {
       add(push, cells_.lattice().wrapped({0.0, 0.0, fixed_share * through * (2.0 * cells_.radius(pressed_.slots[k]))}));
     else if (depth <= overlap_pressed)
       add(push, cells_.lattice().wrapped({0.0, 0.0, -down * diameter_}));
-    move(pressed_.slots[k], push, Point::due);
+    move(pressed_.slots[k], push, Point::swept);
   }
   return deepest;
 }

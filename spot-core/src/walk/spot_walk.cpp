@@ -15,7 +15,7 @@ std::array<double, 4> numbers_of_birth(const SpotParameters& p, std::int64_t id)
   return uniform(p.seed, RandomPurpose::birth, static_cast<std::uint64_t>(id), 0);
 }
 
-/// Numbers of the step to come: waiting time before it, its direction, a lot for others, and whether it turns at all.
+/// Numbers of the step to come: waiting time before it, its direction, a lot for others, and whether it changes direction at all.
 std::array<double, 4> numbers_of_step(const SpotParameters& p, const Spot& spot) {
   return uniform(p.seed, RandomPurpose::step, static_cast<std::uint64_t>(spot.id),
                  static_cast<std::uint64_t>(spot.steps));

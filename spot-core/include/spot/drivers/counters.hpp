@@ -11,7 +11,7 @@ namespace spot {
 struct Counters {
   std::int64_t moves = 0;         ///< spot steps
   std::int64_t volume_moved = 0;  ///< grain volume that they enclosed, by shares of influence (1024 = grain_volume)
-  std::int64_t sweeps = 0;        ///< relaxation sweeps, over one region (time-ordered) or all that was due (windowed)
+  std::int64_t sweeps = 0;        ///< relaxation sweeps, over one region (time-ordered) or some cells (windowed)
   std::int64_t grains_swept = 0;  ///< grains in them, each counted every time
   std::int64_t drained = 0;       ///< grains that left below the outlet
 

@@ -17,10 +17,9 @@ namespace spot {
 /// The fast driver. Per window of time all spots walk and displace their blocks, in order of birth; then the cells in
 /// which that has used up the tolerance are relaxed, as often as it takes.
 ///
-/// How much a cell needs is kept in its account, the number of moves that reached into it: n of them add
-/// w^2 dx^2 n s / 3 to the mean square overlap along the line of centres, s being the mean square difference of the
-/// shares of two grains in touch. A cell is due when that exceeds the tolerance squared, and a sweep pays for that many
-/// moves.
+/// Each cell counts its unrelaxed moves, those that reached into it: n of them add w^2 dx^2 n s / 3 to the mean square
+/// overlap along the line of centres, s being the mean square difference of the shares of two grains in touch. A cell is
+/// swept when that exceeds the tolerance squared, and each sweep takes that many moves off its count.
 ///
 /// With a fixed volume, moves are weighed by what they enclose before the first move of their window.
 ///
@@ -57,12 +56,12 @@ class WindowedDrainage : public Drainage {
   /// How far the grains over an outlet go down in this time, on average, where and when that is most (diameters).
   static double flow_through_orifice(const SpotParameters& spots, double time, double diameter, const Outlets& outlets);
 
-  /// Moves into a cell after which it is relaxed.
-  double due() const { return due_; }
+  /// Moves into a cell after which it is swept.
+  double moves_between_sweeps() const { return moves_between_sweeps_; }
 
  private:
   Overlap carry_out(const GrainChanges& changes) override;
-  static double moves_until_due(const SpotParameters& spots, double tolerance, double diameter);
+  static double moves_between_sweeps_for(const SpotParameters& spots, double tolerance, double diameter);
   static double positive_window(double window);
   /// Throws InvalidParameter if relaxation could not follow what spots do in a window.
   void require_fitting_window() const;
@@ -84,7 +83,7 @@ class WindowedDrainage : public Drainage {
   std::shared_ptr<Communicator> communicator_;
   std::unique_ptr<Workers> workers_;
   double window_;
-  double due_;
+  double moves_between_sweeps_;
   // What read() sets stands before the packing.
   Spots spots_;
   std::int64_t windows_ = 0;

@@ -23,7 +23,7 @@ class GhostLayers {
   /// Gives a grain, which is beyond its own layers, to the rank that owns the cell.
   void emigrate(std::uint32_t slot, const Cell& to);
 
-  /// Collective. Hands over those that emigrate.
+  /// Collective. Sends those that emigrate to their new owners.
   void exchange_migrants(const Container& container);
 
   /// Collective. Brings the copies that neighbours hold up to date: lists, and positions as was chosen before.

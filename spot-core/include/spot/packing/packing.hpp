@@ -17,7 +17,7 @@ namespace spot {
 ///
 /// Layout: structure of arrays. Every grain has a *reference*, the place where it was listed last; cells and
 /// lists follow from the references alone: j is a neighbour of i exactly if their references are closer than
-/// the largest diameter + skin. A grain that has wandered half the skin from its reference is listed anew, by itself,
+/// the largest diameter + skin. A grain that has gone half the skin from its reference is listed anew, by itself,
 /// in `refresh()`; so lists hold every pair in contact, and grains that do not move cost nothing.
 ///
 /// Positions are multiples of `quantum()`; nothing computed here depends on the order of the grains. The quantum
@@ -53,7 +53,7 @@ class Packing {
 
   /// Brings cells, lists and wall marks up to date, to be called before they are used after a move.
   void update_lists(const Container& container) {
-    if (!wandered_.empty()) list_wandered(container);
+    if (!drifted_.empty()) list_drifted(container);
   }
 
   /// Marks the grains near walls anew, as after the walls changed.
@@ -99,7 +99,7 @@ class Packing {
     double ex = x_[i] - reference_x_[i], ey = y_[i] - reference_y_[i];
     const double ez = z_[i] - reference_z_[i];
     periodic_.shorten(ex, ey);
-    if (ex * ex + ey * ey + ez * ez > half_skin_ * half_skin_) wandered_.push_back(i);
+    if (ex * ex + ey * ey + ez * ez > half_skin_ * half_skin_) drifted_.push_back(i);
   }
 
   /// Takes grain i out.
@@ -117,7 +117,7 @@ class Packing {
  private:
   static constexpr std::uint32_t nowhere = 0xffffffff;
 
-  void list_wandered(const Container& container);
+  void list_drifted(const Container& container);
   void sort(const Container& container);
   void unlist(std::uint32_t i);
   void list(std::uint32_t i, const Container& container);
@@ -143,7 +143,7 @@ class Packing {
   std::vector<std::uint16_t> list_size_;
   std::size_t list_capacity_ = 16;
 
-  std::vector<std::uint32_t> wandered_;  // half a skin or more from their references; repeats are harmless
+  std::vector<std::uint32_t> drifted_;  // half a skin or more from their references; repeats are harmless
   std::size_t listed_since_sort_ = 0, sort_after_ = 0;
 };
 

@@ -17,10 +17,10 @@ struct alignas(16) Point {
 
   /// States count as a fourth coordinate when distances to a move are measured, so that nothing that must stay is ever
   /// within reach of one.
-  /// A grain that is due is free, and moves in the sweep that is being made. Between moves there are grains that come
-  /// down until others bear them: they fall, which is to the sweeps as if they were due, they rest for the time being,
+  /// A free grain is swept while the sweep that moves it is being made. Between moves there are grains that come down
+  /// until others bear them: they fall, which is to kernels as if they were swept, they rest for the time being,
   /// or they lie until all others do.
-  static constexpr std::int32_t free = 0, due = 1, falling = due, resting = 2, laid = 3, held = 1 << 29,
+  static constexpr std::int32_t free = 0, swept = 1, falling = swept, resting = 2, laid = 3, held = 1 << 29,
                                 empty = 1 << 30;
 };
 

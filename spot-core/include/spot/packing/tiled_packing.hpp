@@ -115,7 +115,7 @@ class TiledPacking {
   /// Work done in a cell, for balance(), in cells that moves reach.
   void add_work(std::uint32_t cell, std::int64_t work) { work_[cells_.layer_of(cell)] += work; }
 
-  /// Grains above this one may have lost what bore them: they are among those that Settling looks at.
+  /// Grains above this one may have lost what bore them: they are among those that Settling asks about.
   void note_unsupported_above(std::uint32_t slot);
   std::vector<Place>& unsupported() { return unsupported_; }
 

@@ -21,16 +21,16 @@ constexpr double overlap_relaxed_again = 0.02;
 /// Most sweeps of a cell in one window; what is left over waits for the next. A choice.
 constexpr int most_sweeps_in_a_window = 16;
 
-/// In the order of time, a relaxation that met overlaps below this part of what is allowed in flow needs no look at
+/// In the order of time, a relaxation that met overlaps below this part of what is allowed in flow needs no check of
 /// what it left: pushes that make overlaps much deeper start from deep ones.
-constexpr double part_of_overlap_to_look_from = 0.25;
+constexpr double part_of_overlap_to_check_from = 0.25;
 
 /// How far the grains over the orifice may go in a window, in diameters, on average: farther, and they pass through
 /// the base before they are relaxed.
 constexpr double longest_flow_in_a_window = 1.0;
 
-/// Windows between looks at the overlaps of all grains, which cost less than 1 % of the run time then.
-constexpr std::int64_t windows_between_looks = 64;
+/// Windows between checks of the overlaps of all grains, which cost less than 1 % of the run time then.
+constexpr std::int64_t windows_between_checks = 64;
 
 /// Windows after which ranks see whether layers should be shared out anew, which takes time itself. A choice.
 constexpr std::int64_t windows_between_balances = 16;
