@@ -18,7 +18,7 @@ class Curve;
 /// those to what is left of each face where solids are united and intersected.
 ///
 /// Distances to faces, straight and circular edges, and corners are exact but for rounding; to other edges (edges.hpp),
-/// and to corners on them, within 1e-9 of `size`. Everything is found when it is made, so any number of threads may
+/// and to corners on them, within 1e-8 of `size`. Everything is found when it is made, so any number of threads may
 /// ask.
 class Boundary {
  public:
