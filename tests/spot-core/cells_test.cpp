@@ -47,8 +47,7 @@ TEST(CellsUnit, CellsGetAsMuchRoomAsTheyNeed) {
     const auto cell = id % 3 == 0 ? 5u : static_cast<std::uint32_t>(draws.below(cells->count()));
     const std::uint32_t slot = cells->slot(cells->ensure_room(cell));
     const double radius = draws.uniform(0.25, 0.5);
-    cells->occupy(slot, id, {static_cast<std::int32_t>(id), 0, 0, Point::free}, {0, 0, 0, Point::free});
-    cells->set_radius(slot, radius);
+    cells->occupy(slot, id, {static_cast<std::int32_t>(id), 0, 0, Point::free}, {0, 0, 0, Point::free}, radius);
     ids.of_slot[slot] = id;
     expected[id] = {cell, radius};
   }
@@ -84,7 +83,7 @@ TEST(CellsUnit, NotesWhatNeighboursHaveCopiesOf) {
   const std::uint32_t border = cells->first_of_border(spot::above), ghost = cells->first_of_ghosts(spot::above);
   for (const std::uint32_t cell : {border, ghost}) {
     const std::uint32_t slot = cells->slot(cells->ensure_room(cell));
-    cells->occupy(slot, cell, {0, 0, 0, Point::free}, {0, 0, 0, Point::free});
+    cells->occupy(slot, cell, {0, 0, 0, Point::free}, {0, 0, 0, Point::free}, 0.5);
   }
   const auto changed = cells->take_changes(spot::above);
   ASSERT_EQ(changed.size(), 1u) << "ghosts are others'";

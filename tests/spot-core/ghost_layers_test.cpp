@@ -41,7 +41,7 @@ struct Rank {
       const spot::Cell cell = cells.lattice().cell_at(at);
       if (cells.slabs().owner(cell.z) != communicator->rank()) continue;
       const std::uint32_t slot = cells.slot(cells.ensure_room(cells.lattice().number_of(cell)));
-      cells.occupy(slot, grain.id, cells.lattice().wrapped(at), cells.lattice().wrapped(at));
+      cells.occupy(slot, grain.id, cells.lattice().wrapped(at), cells.lattice().wrapped(at), 0.5);
     }
     cells.visit_own([&](std::uint32_t slot) { lists.list(slot, *silo); });
   }

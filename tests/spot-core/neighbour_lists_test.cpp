@@ -39,7 +39,7 @@ struct Listed {
   std::uint32_t put(std::int64_t id, const Vector3& place) {
     const Vector3 at = place - cells.lattice().low();
     const auto room = cells.ensure_room(cells.lattice().number_of(cells.lattice().cell_at(at)));
-    cells.occupy(cells.slot(room), id, cells.lattice().wrapped(at), cells.lattice().wrapped(at));
+    cells.occupy(cells.slot(room), id, cells.lattice().wrapped(at), cells.lattice().wrapped(at), 0.5);
     return cells.slot(room);
   }
 
@@ -87,7 +87,7 @@ TEST(NeighbourListsUnit, AListGoesAlongWithItsGrain) {
   const std::uint32_t from = listed.slot_of(id),
                       to = listed.cells.slot(listed.cells.ensure_room(listed.cells.cell_of(from)));
   const std::uint32_t old = listed.slot_of(id);
-  listed.cells.occupy(to, id, listed.cells.points[old], listed.cells.references[old]);
+  listed.cells.occupy(to, id, listed.cells.points[old], listed.cells.references[old], 0.5);
   listed.lists.rename(old, to);
   listed.cells.vacate(old);
   listed.expect_right();

@@ -53,8 +53,7 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
 }
 
 void TimeOrderedDrainage::require_same_periods() const {
-  if (packing_.periodic() != container().periodic().on(packing_.quantum()))
-    throw InvalidContainer("space repeats otherwise in the container than in the packing");
+  container().periodic().require_same_as(packing_.periodic(), packing_.quantum());
 }
 
 /// Lists need not be saved: no bit depends on them.

@@ -56,4 +56,8 @@ void Periodic::require_length(double least, const char* why) const {
           message("period along ", names[axis], " is ", length(axis), " but must be at least ", least, ", ", why));
 }
 
+void Periodic::require_same_as(const Periodic& packing, const Quantum& quantum) const {
+  if (on(quantum) != packing) throw InvalidContainer("space repeats otherwise in the container than in the packing");
+}
+
 }  // namespace spot

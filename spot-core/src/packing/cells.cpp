@@ -57,10 +57,6 @@ void Cells::allow_unequal() {
   sizes.assign(slots(), size_of(0.5 * lattice().diameter()));
 }
 
-void Cells::set_radius(std::uint32_t slot, double radius) {
-  if (unequal_) sizes[slot] = size_of(radius);
-}
-
 // ---- slots
 
 Place Cells::ensure_room(std::uint32_t cell) {
@@ -108,11 +104,12 @@ void Cells::give_room(std::uint32_t cell) {
   for (SlotData* data : attached_) data->renumber(now, slots);
 }
 
-void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference) {
+void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference, double radius) {
   ids[slot] = id;
   points[slot] = point;
   references[slot] = reference;
   corrections[slot] = {0, 0, 0, 0};
+  if (unequal_) sizes[slot] = size_of(radius);
   note_change(slot);
   if (!own(cell_of(slot))) return;
   ++size_;
@@ -153,7 +150,7 @@ std::vector<std::int64_t> Cells::grains_in_own_layers() const {
 
 std::size_t Cells::memory() const {
   return bytes_in(points, references, corrections, ids, sizes, unrelaxed, drift, in_motion, first_slot_, cell_of_,
-                  changed_[0], changed_[1]);
+                  changed_[0], changed_[1], changed_in_images_);
 }
 
 }  // namespace spot

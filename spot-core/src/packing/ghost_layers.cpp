@@ -55,13 +55,12 @@ void GhostLayers::exchange_migrants(const Container& container) {
       const Slabs& slabs = cells_.slabs();
       if (slabs.owner(migrant.cell.z) != communicator_->rank())
         throw InvalidPacking(message("grain ", migrant.id,
-                                     " has crossed all layers of a rank between two list updates; ", "the ",
-                                     slabs.layers(), " layers are too few for ", slabs.ranks(), " ranks"));
+                                     " has crossed all layers of a rank between two list updates; the ", slabs.layers(),
+                                     " layers are too few for ", slabs.ranks(), " ranks"));
       const Place place = cells_.ensure_room(cells_.lattice().number_of(migrant.cell));
       const std::uint32_t at = cells_.slot(place);
-      cells_.occupy(at, migrant.id, migrant.point, migrant.point);
+      cells_.occupy(at, migrant.id, migrant.point, migrant.point, migrant.radius);
       cells_.corrections[at] = migrant.correction;
-      cells_.set_radius(at, migrant.radius);
       lists_.list(at, container);
     }
 }
@@ -80,19 +79,22 @@ void GhostLayers::exchange_layers(const Container& container) {
     if (cells_.has_ghosts(side)) take_changes(incoming[side], side, container);
 }
 
+/// Makes sure that there is such a place, and that no copy is in it.
+void GhostLayers::clear(const Place& place) {
+  cells_.ensure_place(place);
+  const std::uint32_t at = cells_.slot(place);
+  if (!cells_.occupied(at)) return;
+  lists_.unlist(at);
+  cells_.vacate(at);
+}
+
 /// An image has the grains of its source in the same places, a period away.
 void GhostLayers::update_images(const Container& container) {
   const CellLattice& lattice = cells_.lattice();
   std::vector<std::pair<Place, Place>> changed;  // of a source, and of its image
   for (const Place& place : cells_.take_changes_seen_in_images())
     for (const std::uint32_t image : cells_.images_of(place.cell)) changed.push_back({place, {image, place.in_cell}});
-  for (const auto& [source, image] : changed) {
-    cells_.ensure_place(image);
-    const std::uint32_t at = cells_.slot(image);
-    if (!cells_.occupied(at)) continue;
-    lists_.unlist(at);
-    cells_.vacate(at);
-  }
+  for (const auto& [source, image] : changed) clear(image);
   std::vector<Place> come;
   for (const auto& [source, image] : changed) {
     const std::uint32_t from = cells_.slot(source), to = cells_.slot(image);
@@ -101,8 +103,7 @@ void GhostLayers::update_images(const Container& container) {
     Point point = cells_.points[from], reference = cells_.references[from];
     add(point, by);
     add(reference, by);
-    cells_.occupy(to, cells_.ids[from], point, reference);
-    cells_.set_radius(to, cells_.radius(from));
+    cells_.occupy(to, cells_.ids[from], point, reference, cells_.radius(from));
     come.push_back(image);
   }
   for (const Place& place : come) lists_.list(cells_.slot(place), container);
@@ -164,18 +165,10 @@ void GhostLayers::take_changes(const Bytes& bytes, Side side, const Container& c
   const auto changed = reader.take_all<Change>();
   const auto place_of = [&](const Change& change) { return Place{first + change.in_layer, change.in_cell}; };
   // Slots may be named more than once: what they hold now is what all of these say.
-  for (const Change& change : changed) {
-    cells_.ensure_place(place_of(change));
-    const std::uint32_t at = cells_.slot(place_of(change));
-    if (!cells_.occupied(at)) continue;
-    lists_.unlist(at);
-    cells_.vacate(at);
-  }
-  for (const Change& change : changed) {
-    if (change.id < 0) continue;
-    cells_.occupy(cells_.slot(place_of(change)), change.id, change.point, change.reference);
-    cells_.set_radius(cells_.slot(place_of(change)), change.radius);
-  }
+  for (const Change& change : changed) clear(place_of(change));
+  for (const Change& change : changed)
+    if (change.id >= 0)
+      cells_.occupy(cells_.slot(place_of(change)), change.id, change.point, change.reference, change.radius);
   for (const Change& change : changed)
     if (change.id >= 0) lists_.list(cells_.slot(place_of(change)), container);
   const auto unrelaxed = reader.take_all<std::int32_t>();

@@ -7,22 +7,17 @@
 
 namespace spot {
 
-/// How far overlapping neighbours push each other.
-struct NeighbourPush {
-  double in_contact;               ///< overlap at which two grains are left alone, in diameters
-  double pair_share, fixed_share;  ///< as of kernels::Push
-};
-
 /// What neighbours push n grains by, with the kernel for grains that are equal or that for those that are not.
 inline void push_off_neighbours(const kernels::Kernels& kernels, const Cells& cells, const NeighbourLists& lists,
-                                const std::uint32_t* grains, std::size_t n, const NeighbourPush& push, Point* pushes) {
-  const auto pair = static_cast<float>(push.pair_share), fixed = static_cast<float>(push.fixed_share);
+                                const std::uint32_t* grains, std::size_t n, const PushStrength& strength,
+                                Point* pushes) {
+  const auto pair = static_cast<float>(strength.pair_share), fixed = static_cast<float>(strength.fixed_share);
   if (cells.unequal()) {
     kernels.push_off_unequal_neighbours(cells.points.data(), cells.sizes.data(), grains, n, lists.view(),
-                                        {static_cast<float>(1.0 - push.in_contact), pair, fixed}, pushes);
+                                        {static_cast<float>(1.0 - strength.in_contact), pair, fixed}, pushes);
     return;
   }
-  const double parted = (1.0 - push.in_contact) * cells.lattice().diameter() / cells.lattice().quantum().length();
+  const double parted = (1.0 - strength.in_contact) * cells.lattice().diameter() / cells.lattice().quantum().length();
   kernels.push_off_neighbours(cells.points.data(), grains, n, lists.view(),
                               {static_cast<float>(1.0 / (parted * parted)), pair, fixed}, pushes);
 }

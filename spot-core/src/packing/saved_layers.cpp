@@ -54,9 +54,8 @@ void SavedLayers::fill(Cells& into) const {
   for (const SavedGrain& grain : grains) {
     if (!is_own(grain.cell)) continue;
     const Place place = into.ensure_room(held(grain.cell));
-    into.occupy(into.slot(place), grain.id, grain.point, grain.reference);
+    into.occupy(into.slot(place), grain.id, grain.point, grain.reference, grain.radius);
     into.corrections[into.slot(place)] = grain.correction;
-    into.set_radius(into.slot(place), grain.radius);
   }
   for (const SavedCell& cell : cells) {
     if (!is_own(cell.cell)) continue;

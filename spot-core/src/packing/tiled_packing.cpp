@@ -63,14 +63,20 @@ TiledPacking::TiledPacking(double diameter, double extent, double outlet, const 
   set_slabs(Slabs(communicator_->sum(in_layer), communicator_->size()));
   if (some_are_smaller(checked)) cells_.allow_unequal();
   for (const Grain& grain : take_own(checked)) {
-    const Vector3 at = lattice.periodic().wrap(grain.position) - lattice.low();
-    Point point = lattice.wrapped(at);
-    if (grain.held) point.state = Point::held;
-    const Place place = cells_.ensure_room(lattice.number_of(lattice.cell_at(at)));
-    cells_.occupy(cells_.slot(place), grain.id, point, point);
-    cells_.set_radius(cells_.slot(place), grain.radius);
+    put(grain, Point::free);
   }
   list_all(container);
+}
+
+/// One of the own layers' grains, in this state unless it is held.
+Place TiledPacking::put(const Grain& grain, std::int32_t state) {
+  const CellLattice& lattice = cells_.lattice();
+  const Vector3 at = lattice.periodic().wrap(grain.position) - lattice.low();
+  Point point = lattice.wrapped(at);
+  point.state = grain.held ? Point::held : state;
+  const Place place = cells_.ensure_room(lattice.number_of(lattice.cell_at(at)));
+  cells_.occupy(cells_.slot(place), grain.id, point, point, radius_in(diameter(), grain));
+  return place;
 }
 
 void TiledPacking::set_slabs(const Slabs& slabs) {
@@ -89,8 +95,7 @@ std::vector<Grain> TiledPacking::take_own(const std::vector<Grain>& grains) cons
 }
 
 void TiledPacking::require_same_periods(const Container& container) const {
-  if (container.periodic().on(quantum()) != cells_.lattice().periodic())
-    throw InvalidContainer("space repeats otherwise in the container than in the packing");
+  container.periodic().require_same_as(cells_.lattice().periodic(), quantum());
 }
 
 /// Collective.
@@ -163,9 +168,8 @@ void TiledPacking::move_reference(Place place) {
   if (number != place.cell) {
     const Place to = cells_.ensure_room(number);
     const std::uint32_t old = cells_.slot(place), slot = cells_.slot(to);
-    cells_.occupy(slot, cells_.ids[old], cells_.points[old], cells_.points[old]);
+    cells_.occupy(slot, cells_.ids[old], cells_.points[old], cells_.points[old], cells_.radius(old));
     cells_.corrections[slot] = cells_.corrections[old];
-    cells_.set_radius(slot, cells_.radius(old));
     lists_.rename(old, slot);
     cells_.vacate(old);
     place = to;

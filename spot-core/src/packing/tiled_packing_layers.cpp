@@ -173,21 +173,13 @@ Overlap TiledPacking::change(const std::vector<std::int64_t>& gone, const std::v
   if (some_go) change.take_out_going(container);
   change.require_new_ids(incoming);
   if (some_are_smaller(incoming)) cells_.allow_unequal();
-  const CellLattice& lattice = cells_.lattice();
   std::vector<Place> places;
-  for (const Grain& grain : incoming) {
-    const Vector3 at = lattice.periodic().wrap(grain.position) - lattice.low();
-    Point point = lattice.wrapped(at);
-    point.state = grain.held ? Point::held : Point::falling;
-    places.push_back(cells_.ensure_room(lattice.number_of(lattice.cell_at(at))));
-    cells_.occupy(cells_.slot(places.back()), grain.id, point, point);
-    cells_.set_radius(cells_.slot(places.back()), radius_in(diameter(), grain));
-  }
+  for (const Grain& grain : incoming) places.push_back(put(grain, Point::falling));
   for (const Place& place : places) lists_.list(cells_.slot(place), container);
   ghosts_.send_no_positions();
   ghosts_.exchange(container);
   Overlap largest;
-  double least = square(lattice.quanta_of_diameter());
+  double least = square(cells_.lattice().quanta_of_diameter());
   for (const Place& place : places) find_larger_overlap(cells_.slot(place), least, largest);
   return largest;
 }

@@ -27,8 +27,8 @@ void part_coincident(const TiledPacking& packing, double pair_share, PushedGrain
 
 void find_pushes(const TiledPacking& packing, const PushStrength& strength, PushedGrains& grains) {
   grains.pushes.resize(grains.count);
-  push_off_neighbours(packing.kernels(), packing.cells(), packing.lists(), grains.slots.data(), grains.count,
-                      {strength.in_contact, strength.pair_share, strength.fixed_share}, grains.pushes.data());
+  push_off_neighbours(packing.kernels(), packing.cells(), packing.lists(), grains.slots.data(), grains.count, strength,
+                      grains.pushes.data());
   part_coincident(packing, strength.pair_share, grains);
   for (const std::uint32_t k : grains.near_walls)
     packing.walls().push_off_planes(grains.slots[k], static_cast<float>(strength.fixed_share), grains.pushes[k]);

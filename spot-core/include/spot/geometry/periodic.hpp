@@ -69,6 +69,9 @@ class Periodic {
   /// Throws InvalidContainer, naming the axis, if a period is shorter than this; `why` ends the message.
   void require_length(double least, const char* why) const;
 
+  /// Throws InvalidContainer unless, on this quantum, space repeats as it does in a packing.
+  void require_same_as(const Periodic& packing, const Quantum& quantum) const;
+
   bool operator==(const Periodic& other) const { return low_ == other.low_ && high_ == other.high_; }
   bool operator!=(const Periodic& other) const { return !(*this == other); }
 

@@ -50,7 +50,6 @@ class Cells : public HeldCells {
   /// Grains are unequal from now on, all that are there being of the largest size.
   void allow_unequal();
   bool unequal() const { return unequal_; }
-  void set_radius(std::uint32_t slot, double radius);
   double radius(std::uint32_t slot) const { return unequal_ ? sizes[slot].radius : 0.5 * lattice().diameter(); }
   /// Of the centres of two grains that touch, in quanta.
   double touching_distance(std::uint32_t a, std::uint32_t b) const {
@@ -91,7 +90,8 @@ class Cells : public HeldCells {
   Place ensure_room(std::uint32_t cell);
   /// As many slots in a cell as a place in it needs.
   void ensure_place(const Place& place);
-  void occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference);
+  /// `radius`: of the largest grains, unless some are unequal.
+  void occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference, double radius);
   void vacate(std::uint32_t slot);
   /// What neighbouring ranks have copies of has changed.
   void note_change(std::uint32_t slot);

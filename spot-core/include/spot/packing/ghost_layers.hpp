@@ -37,6 +37,7 @@ class GhostLayers {
 
  private:
   void exchange_layers(const Container& container);
+  void clear(const Place& place);
   void update_images(const Container& container);
   void copy_to_image(std::uint32_t source, std::uint32_t image);
   void choose(std::int32_t parts);

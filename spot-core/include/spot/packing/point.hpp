@@ -36,6 +36,13 @@ struct Reach {
   float radius_squared, per_square;
 };
 
+/// How far overlapping grains push each other apart in a sweep.
+struct PushStrength {
+  double in_contact;   ///< overlap at which two grains are left alone, in diameters
+  double pair_share;   ///< of the overlap beyond that, by which each of two grains moves that both may
+  double fixed_share;  ///< the same, of a grain against one that stays, or a wall
+};
+
 /// Of the corrections in a cell: the square of the longest, and how deep the deepest overlap was (as in a push).
 struct Corrections {
   float longest_squared, depth;

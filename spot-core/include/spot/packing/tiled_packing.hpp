@@ -123,6 +123,7 @@ class TiledPacking {
   TiledPacking(double diameter, double extent, const Periodic& periodic, std::shared_ptr<Communicator> communicator);
   void set_slabs(const Slabs& slabs);
   bool some_are_smaller(const std::vector<Grain>& grains);
+  Place put(const Grain& grain, std::int32_t state);
   std::vector<Grain> take_own(const std::vector<Grain>& grains) const;
   void list_all(const Container& container);
   void find_drifted();

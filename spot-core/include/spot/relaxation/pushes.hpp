@@ -9,13 +9,6 @@
 
 namespace spot {
 
-/// How far overlapping grains push each other apart in a sweep.
-struct PushStrength {
-  double in_contact;   ///< overlap at which two grains are left alone, in diameters
-  double pair_share;   ///< of the overlap beyond that, by which each of two grains moves that both may
-  double fixed_share;  ///< the same, of a grain against one that stays, or a wall
-};
-
 /// Some grains, and what pushes each of them, in quanta.
 struct PushedGrains {
   std::vector<std::uint32_t> slots;  ///< of `count` grains, and kernels::ahead more
