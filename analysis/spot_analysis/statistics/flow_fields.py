@@ -12,6 +12,7 @@ from scipy.ndimage import gaussian_filter
 SMOOTHING = (1.5, 2.0)  # d along x and z, of all fields
 DILATION_SMOOTHING = (2.0, 3.0)  # d, of those from which gradients of the packing fraction are taken
 SURFACE = 8  # d below the free surface that are left out
+STILL = 1e-6  # d/tau, under which nothing counts as falling
 BULK = 5  # d above the base and below the surface, between which the packing at rest is averaged
 
 
@@ -20,6 +21,8 @@ class FlowFields:
     """Fields (X, Z) in x = 0.5, 1.5, ... and z = 0.5, 1.5, ... over one interval.
 
     u, v_x : downward velocity and that away from the axis, d/tau; u_x, u_z, v_xx, v_xz their gradients
+    profile : u in bins, not smoothed, of which widths are taken
+    s, s_x : shear per distance fallen |u_x| / u, 1/d, and ds/dx
     fraction : packing fraction, in bins, not smoothed
     dilation, dilation_gradient : c = 1 - phi / phi at rest, and dc/dx, 1/d
     loss : rate at which the packing loosens where it is, div v = -(d phi/dt + v grad phi) / phi, 1/tau
@@ -29,6 +32,9 @@ class FlowFields:
 
     u: np.ndarray
     v_x: np.ndarray
+    profile: np.ndarray
+    s: np.ndarray
+    s_x: np.ndarray
     u_x: np.ndarray
     u_z: np.ndarray
     v_xx: np.ndarray
@@ -79,9 +85,11 @@ def fields_of(sums, rest, fraction_of_grain, top):
     u_x, u_z = np.gradient(u)
     v_xx, v_xz = np.gradient(v_x)
     n_x, n_z = np.gradient(near)
-    c_wide = 1 - near / rest_near
-    whole = {"u": u, "v_x": v_x, "u_x": u_x, "u_z": u_z, "v_xx": v_xx, "v_xz": v_xz, "fraction": grains * fraction_of_grain,
-             "dilation": c_wide, "dilation_gradient": np.gradient(c_wide)[0],
+    c = 1 - near / rest_near
+    s = np.abs(u_x) / np.maximum(u, STILL)
+    whole = {"u": u, "profile": sums["u"] / np.maximum(sums["moved"], 1), "s": s, "s_x": np.gradient(smooth(s))[0],
+             "v_x": v_x, "u_x": u_x, "u_z": u_z, "v_xx": v_xx, "v_xz": v_xz, "fraction": grains * fraction_of_grain,
+             "dilation": c, "dilation_gradient": np.gradient(c)[0],
              "loss": -(smooth(growth, DILATION_SMOOTHING) + v_x * n_x - u * n_z) / near,
              "strain": mean("strain"), "fallen": mean("fallen")}
     return FlowFields(**{name: field[len(field) // 2:] for name, field in whole.items()}, top=top)

@@ -49,6 +49,11 @@ class Measurement:
         """How many displacements over LAG_TAU interval ``number`` holds."""
         return self._sums[number].get("pairs", 0)
 
+    def drained(self, number):
+        """Grains that have left the box, on average over the snapshots of the interval."""
+        sums = self._sums[number]
+        return float(self._at_rest.sum() - sums["grains"].sum() / sums["snapshots"])
+
     def fields(self, number, side=0):
         """FlowFields of interval number ``number``; of both sides, or of x < 0 (-1) or x > 0 (1) alone."""
         sums = {name: self._folded(value, -1 if name == "v_x" else 1, side) if np.ndim(value) else value
