@@ -119,7 +119,8 @@ def print_collapse(run, other):
         if len(rows["b"]) < 2 * flow_law.BINS:
             continue
         print(f"log b_eff {title}: {len(rows['b'])} places, standard deviation {np.log(rows['b']).std():.2f}, of which between the sides "
-              f"{np.median(rows['noise']):.2f} (median)\n")
+              f"{np.median(rows['noise']):.2f} (median); rank of b_eff of one side against shear_per_fall of the other "
+              f"{flow_law.rank_across(rows):.2f}\n")
         found = {name: flow_law.collapse(rows, name, others) for name in flow_places.CANDIDATES}
         table(["of", "rank", "scatter", f"bias in {run.spans()} tau", f"{other.name}: bias, scatter" if other else "other"],
               [[name, f"{one.rank:.2f}", f"{one.scatter:.2f}", listed(one.bias),

@@ -141,6 +141,16 @@ def test_collapse_on_what_decides():
         flow_law.collapse(flow_places.chosen(rows, np.arange(400) < 19), "dilation")
 
 
+def test_rank_across_sides_knows_no_common_noise():
+    """b_eff and s of a side share a noise that is wrongly a correlation; across sides only what is planted is left."""
+    rng = np.random.default_rng(8)
+    noise = np.exp(rng.normal(0, 0.5, (2, 2000)))
+    rows = {"b_left": 1 / noise[0], "s_left": noise[0], "b_right": 1 / noise[1], "s_right": noise[1]}
+    assert abs(flow_law.rank_across(rows)) < 0.07  # four standard errors
+    common = np.exp(rng.normal(0, 0.5, 2000))
+    assert flow_law.rank_across({name: values * common**(-1 if name[0] == "b" else 1) for name, values in rows.items()}) < -0.3
+
+
 def test_planted_laws_are_fitted():
     rows = planted_rows(kappa=0.3)
     found, error = flow_law.fit_saturating(rows, (1.5, 0.2, 0.0))

@@ -49,6 +49,11 @@ def collapse(rows, name, other=None):
     return Collapse(found.rank, found.scatter, found.bias, float(apart.mean()), float(apart.std()))
 
 
+def rank_across(rows):
+    """Spearman's correlation of b_eff on one side of the axis with |u_x| / u on the other, which no common noise of u_x makes."""
+    return float(spearmanr(np.concatenate([rows["b_left"], rows["b_right"]]), np.concatenate([rows["s_right"], rows["s_left"]]))[0])
+
+
 def by_interval(rows, values):
     """(k,) means of values (p,) over the places of each interval, up to the last that has some; not a number where none has."""
     number = np.arange(rows["interval"].max(initial=-1) + 1)

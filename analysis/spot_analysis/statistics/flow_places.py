@@ -21,6 +21,7 @@ def places(measurement, wall=2):
     measurement : ``flow_sums``.Measurement; wall : d at the side walls that are left out
 
     interval : its number; x, height : of the place; b, noise : b_eff and half the difference of its logarithm between the two sides;
+    b_left, b_right, s_left, s_right : b_eff and |u_x| / u of one side alone, whose noises are independent
     u, v_x, u_x; the CANDIDATES: dilation_1d to 3d are that so far outwards and 1 d up, where a step leads; shear_per_fall is
     |u_x| / u, 1/d, and shear_gradient its derivative along x; share_of_axis is u over that on the axis
     """
@@ -43,7 +44,9 @@ def _places(measurement, number, wall):
             sides = [mean(side, "v_x", x, z) / (mean(side, "u_x", x, z) or np.nan) for side in (left, right)]
             if u < max(SLOWEST * axis, STILL) or not min(sides) > 0 or not v_x / u_x > 0:
                 continue
-            yield {"interval": number, "x": x + 1, "height": z, "u": u, "v_x": v_x, "u_x": u_x, "b": v_x / u_x,
+            s_left, s_right = (abs(mean(side, "u_x", x, z)) / mean(side, "u", x, z) for side in (left, right))
+            yield {"b_left": sides[0], "b_right": sides[1], "s_left": s_left, "s_right": s_right, "interval": number,
+                   "x": x + 1, "height": z, "u": u, "v_x": v_x, "u_x": u_x, "b": v_x / u_x,
                    "noise": abs(np.log(sides[0] / sides[1])) / 2, "shear": abs(u_x), "shear_per_fall": abs(u_x) / u,
                    "shear_gradient": mean(both, "s_x", x, z),
                    "share_of_axis": u / axis, **{f"dilation_{k}d": mean(both, "dilation", x + k, z + 1) for k in (1, 2, 3)},
