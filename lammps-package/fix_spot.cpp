@@ -40,7 +40,7 @@ using spot::message;
 namespace {
 
 /// Columns of the spots in dump local.
-enum SpotColumn { ID, X, Y, Z, STEPS, COLUMNS };
+enum SpotColumn { ID, X, Y, Z, STEPS, VOLUME, COLUMNS };
 
 /// Columns of the output per atom, after the displacement along x, y and z.
 enum GrainColumn { MOVES = 3, GRAIN_COLUMNS };
@@ -139,6 +139,12 @@ struct FixSpot::Model {
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
   std::int64_t windows = 0;  // done since the fix was made; the clock of the spots
+  /// That spots have left in the packing, less what they took up, in grains.
+  double volume_left() {
+    const double parts = static_cast<double>(drainage->total().volume_left) / spot::CriticalState::volume_parts;
+    return parts * command.spots.influence * command.spots.fixed_volume;
+  }
+
   double window = 0.0;       // in time units; until the first step only what it would be
   int windows_per_step = 1;
   std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
@@ -162,7 +168,7 @@ FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg)
   restart_global = 1;
 
   vector_flag = 1;
-  size_vector = 7;
+  size_vector = 8;
   global_freq = 1;
   extvector = 0;
 
@@ -602,6 +608,7 @@ void FixSpot::list_spots() {
     row[Y] = spots[k].position.y();
     row[Z] = spots[k].position.z();
     row[STEPS] = static_cast<double>(spots[k].steps);
+    row[VOLUME] = spots[k].volume;
     model->rows[k] = row;
   }
   std::sort(model->rows.begin(), model->rows.end(), [](const double *a, const double *b) { return a[ID] < b[ID]; });
@@ -637,8 +644,10 @@ double FixSpot::compute_vector(int which) {
       return mean_outflow();
     case 5:
       return update->whichflag ? largest_overlap() : model->overlap_after_run;
-    default:
+    case 6:
       return static_cast<double>(model->drainage->total().sweeps);
+    default:
+      return model->volume_left();
   }
 }
 

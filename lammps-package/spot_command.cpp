@@ -202,6 +202,13 @@ const std::map<std::string, Reader>& readers() {
        }},
       {"persistence", [](SpotCommand& c, Words& w) { c.spots.persistence = w.not_negative("the persistence"); }},
       {"dilation", [](SpotCommand& c, Words& w) { c.spots.dilation = w.not_negative("the dilation"); }},
+      {"critical",
+       [](SpotCommand& c, Words& w) {
+         c.spots.critical_fraction = w.not_negative("the critical packing fraction");
+         c.spots.exchange_length = w.positive("the exchange length");
+       }},
+      {"dilatancy", [](SpotCommand& c, Words& w) { c.spots.dilatancy = w.not_negative("the dilatancy"); }},
+      {"shear", [](SpotCommand& c, Words& w) { c.spots.shear_length = w.not_negative("the shear length"); }},
       {"threads", [](SpotCommand& c, Words& w) { c.threads = to_int(w.integer("the number of threads", 1)); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,
@@ -309,6 +316,9 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"persistence", precise(spots.persistence)},
           {"speed", precise(spots.speed)},
           {"dilation", precise(spots.dilation)},
+          {"critical", precise(spots.critical_fraction, ' ', spots.exchange_length)},
+          {"dilatancy", precise(spots.dilatancy)},
+          {"shear", precise(spots.shear_length)},
           {"injection", precise(spots.injection_rate.largest())},
           {"volume", precise(spots.fixed_volume)},
           {"steps", spots.together ? "together" : "poisson"},

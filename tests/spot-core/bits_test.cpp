@@ -56,6 +56,7 @@ Bytes bytes_of(const std::map<std::int64_t, Spot>& spots) {
     spot::append(bytes, spot.steps);
     spot::append(bytes, spot.position);
     for (const double number : {spot.next_step, spot.direction, spot.chance, spot.relative_speed}) spot::append(bytes, number);
+    if (spot.volume != 1.0) spot::append(bytes, spot.volume);  // scenes from before there were others keep their checksums
   }
   return bytes;
 }

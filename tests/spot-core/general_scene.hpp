@@ -112,6 +112,12 @@ class GeneralScene {
     if (draws.below(2) == 0) spots_.dilation = draws.uniform(0.01, 0.2);
     relaxation_.alpha = draws.uniform(0.5, 1.0);
     if (draws.below(2) == 0) relaxation_.contact_overlap = 1e-3;
+    if (draws.below(2) == 0) spots_.shear_length = d * draws.uniform(0.5, 5.0);
+    if (draws.below(2) == 0 && spots_.fixed_volume > 0.0) {
+      spots_.critical_fraction = draws.uniform(0.5, 0.7);
+      spots_.exchange_length = spots_.step_height * draws.uniform(0.2, 5.0);
+      if (draws.below(2) == 0) spots_.dilatancy = d * draws.uniform(0.05, 0.5);
+    }
   }
 
   std::unique_ptr<spot::TimeOrderedDrainage> start_time_ordered() const {
@@ -157,7 +163,9 @@ class GeneralScene {
     return spot::message("scene ", seed_, ": ", grains_.size(), equal_ ? " equal" : " unequal",
                          " grains, d = ", diameter_, repeats_x_ ? ", repeats along x" : "",
                          repeats_y_ ? ", repeats along y" : "", ", R_s = ", spots_.radius / diameter_,
-                         ", w = ", spots_.influence, ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation);
+                         ", w = ", spots_.influence, ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation,
+                         ", phi_c = ", spots_.critical_fraction, ", l = ", spots_.exchange_length,
+                         ", a = ", spots_.dilatancy, ", L = ", spots_.shear_length);
   }
 
  private:

@@ -72,6 +72,8 @@ class PlainWindows {
         silo_(scenes::small_silo(6.0, 4.0)),
         walk_(spots, *silo_),
         packing_(1.0, 100.0, outlet, grains, *silo_),
+        critical_(spots, 1.0),
+        flow_(spots, *silo_, 1.0),
         next_birth_(walk_.time_of_birth(0, 0.0)) {}
 
   void advance_by_a_window() {
@@ -92,18 +94,23 @@ class PlainWindows {
     }
     for (Live& live : live_) {
       while (live.spot.next_step <= until && !live.out)
-        moves_of_window_.emplace_back(walk_.step(live.spot, *silo_), &live);
+        moves_of_window_.emplace_back(walk_.step(live.spot, *silo_, flow_), &live);
     }
     // All are weighed before the first is carried out.
     for (auto& [move, live] : moves_of_window_) {
       const int shares = packing_.shares(move, spots_);
       ++moves;
       volume_moved += shares;
-      move.weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet, shares);
+      move.weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet, shares) * live->spot.volume;
+      flow_.add(move, live->spot.volume);
+      if (critical_.on())
+        live->spot.volume =
+            critical_.volume_after(live->spot.volume, move, shares, flow_.shear(move.middle), *silo_);
       if (shares == 0 && move.middle.z() > spots_.radius) live->out = true;
     }
     for (const auto& [move, live] : moves_of_window_) packing_.displace(move, spots_);
     moves_of_window_.clear();
+    flow_.update(window_, alone);
     for (const Grain& grain : packing_.take_out_below(outlet)) drained.push_back(grain);
   }
 
@@ -124,6 +131,8 @@ class PlainWindows {
   std::shared_ptr<const spot::Container> silo_;
   spot::SpotWalk walk_;
   scenes::PlainPacking packing_;
+  spot::CriticalState critical_;
+  spot::FlowField flow_;
   std::vector<Live> live_;
   std::vector<std::pair<Move, Live*>> moves_of_window_;
   double next_birth_;
@@ -137,6 +146,7 @@ struct Spots {
   bool together;
   bool parabolic = false;
   double dilation = 0.0;
+  double critical_fraction = 0.0, dilatancy = 0.0, shear_length = 0.0;
 };
 
 class WindowedDrainageBruteForce : public testing::TestWithParam<Spots> {};
@@ -148,6 +158,10 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   spots.fixed_volume = GetParam().fixed_volume;
   spots.together = GetParam().together;
   spots.dilation = GetParam().dilation;
+  spots.critical_fraction = GetParam().critical_fraction;
+  spots.exchange_length = 1.0;
+  spots.dilatancy = GetParam().dilatancy;
+  spots.shear_length = GetParam().shear_length;
   if (GetParam().parabolic) spots.profile = spot::InfluenceProfile::parabolic;
   RelaxationParameters never;
   never.tolerance = 1e6;
@@ -174,7 +188,11 @@ INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
                          testing::Values(Spots{"Poisson", 0.0, false}, Spots{"FixedVolume", 77.0, false},
                                          Spots{"Parabolic", 77.0, false, true},
                                          Spots{"Dilation", 77.0, false, true, 0.03}, Spots{"Together", 0.0, true},
-                                         Spots{"FixedVolumeTogether", 77.0, true}),
+                                         Spots{"FixedVolumeTogether", 77.0, true},
+                                         Spots{"CriticalState", 77.0, false, true, 0.0, 0.6},
+                                         Spots{"Dilatancy", 77.0, false, true, 0.03, 0.6, 0.1},
+                                         Spots{"Shear", 0.0, false, false, 0.0, 0.0, 0.0, 2.0},
+                                         Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 2.0}),
                          [](const auto& spots) { return spots.param.name; });
 
 TEST(WindowedDrainageInvariance, ARerunIsIdentical) {

@@ -134,9 +134,15 @@ void WindowedDrainage::displace() {
 /// `enclosed`: volume of this rank's grains in each move.
 void WindowedDrainage::weigh(const std::vector<int>& enclosed, std::vector<Move>& moves) {
   moves_.sum_enclosed(enclosed);
-  for (SharedMove& shared : moves_.all())
+  for (SharedMove& shared : moves_.all()) {
+    if (!moves_.own(shared)) continue;
+    const Spots::Carried carried = spots_.carry(shared.move, shared.enclosed, container());
+    count_volume_left(carried.left);
     shared.move.weight =
-        fixed_volume_weight(spot_parameters(), shared.move.middle.z() - limits().outlet, shared.enclosed);
+        fixed_volume_weight(spot_parameters(), shared.move.middle.z() - limits().outlet, shared.enclosed) *
+        carried.volume;
+  }
+  spots_.update_flow(window_, *communicator_);
   if (spot_parameters().fixed_volume > 0.0) moves_.send_weights([this](const Move& move) { return reached(move); });
   for (std::size_t k = 0; k < moves.size(); ++k) moves[k].weight = moves_.all()[k].move.weight;
 }
@@ -164,8 +170,8 @@ void WindowedDrainage::take_out_drained() {
 
 Counters WindowedDrainage::total() {
   const Counters& own = counters();
-  const auto sums = communicator_->sum({own.moves, own.volume_moved, own.drained});
-  return {sums[0], sums[1], own.sweeps, own.grains_swept, sums[2]};
+  const auto sums = communicator_->sum({own.moves, own.volume_moved, own.volume_left, own.drained});
+  return {sums[0], sums[1], own.sweeps, own.grains_swept, sums[2], sums[3]};
 }
 
 void WindowedDrainage::relax() {

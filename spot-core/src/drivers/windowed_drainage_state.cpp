@@ -28,6 +28,7 @@ std::vector<Bytes> WindowedDrainage::read(const std::vector<Bytes>& saved) {
     if (communicator_->rank() == 0) {  // which goes on counting for all
       counters.moves += read.moves;
       counters.volume_moved += read.volume_moved;
+      counters.volume_left += read.volume_left;
       counters.drained += read.drained;
     }
     spots_.restore(reader);

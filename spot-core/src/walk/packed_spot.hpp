@@ -17,6 +17,7 @@ inline void append(Bytes& bytes, const Spot& spot) {
   append(bytes, spot.direction);
   append(bytes, spot.chance);
   append(bytes, spot.relative_speed);
+  append(bytes, spot.volume);
 }
 
 inline Spot take_spot(ByteReader& reader) {
@@ -28,6 +29,7 @@ inline Spot take_spot(ByteReader& reader) {
   spot.direction = reader.take<double>();
   spot.chance = reader.take<double>();
   spot.relative_speed = reader.take<double>();
+  spot.volume = reader.take<double>();
   return spot;
 }
 

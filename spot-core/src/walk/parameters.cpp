@@ -42,6 +42,9 @@ void SpotParameters::validate() const {
     throw InvalidParameter(message("spot persistence is ", persistence, " but must be from 0 to below 1"));
   if (!(dilation >= 0.0 && dilation < 1.0))
     throw InvalidParameter(message("spot dilation is ", dilation, " but must be from 0 (off) to below 1"));
+  validate_critical_state();
+  if (!(shear_length >= 0.0) || !std::isfinite(shear_length))
+    throw InvalidParameter(message("shear length of spots is ", shear_length, " but must be zero (off) or positive"));
   if (dilation > 0.0 && together)
     throw InvalidParameter(message("spot dilation is ", dilation, " but must be 0 for spots that step together"));
   require_positive("spot step width", step_width);
@@ -50,6 +53,28 @@ void SpotParameters::validate() const {
   injection_rate.validate();
   if (!(fixed_volume >= 0.0) || !std::isfinite(fixed_volume))
     throw InvalidParameter(message("fixed volume is ", fixed_volume, " grains but must be zero (off) or positive"));
+}
+
+void SpotParameters::validate_critical_state() const {
+  if (!(dilatancy >= 0.0) || !std::isfinite(dilatancy))
+    throw InvalidParameter(message("dilatancy is ", dilatancy, " but must be zero (off) or positive"));
+  if (critical_fraction == 0.0) {
+    if (dilatancy > 0.0)
+      throw InvalidParameter(message("dilatancy is ", dilatancy, " but needs a critical packing fraction to lower"));
+    return;
+  }
+  if (!(critical_fraction >= calibration::least_critical_fraction &&
+        critical_fraction <= calibration::largest_critical_fraction))
+    throw InvalidParameter(message("critical packing fraction is ", critical_fraction, " but must be 0 (off) or from ",
+                                   calibration::least_critical_fraction, " to ",
+                                   calibration::largest_critical_fraction));
+  require_positive("exchange length", exchange_length);
+  if (exchange_length < calibration::least_exchange_in_steps * step_height)
+    throw InvalidParameter(message("exchange length is ", exchange_length, " but must be at least ",
+                                   calibration::least_exchange_in_steps, " of the spots' step height, ", step_height));
+  if (fixed_volume == 0.0)
+    throw InvalidParameter(message("critical packing fraction is ", critical_fraction,
+                                   " but spots carry no fixed volume, of which they could leave some"));
 }
 
 double step_width_for(double diffusion_length, double step_height, double persistence) {

@@ -84,11 +84,22 @@ void SpotWalk::set_relative_speed(Spot& spot, double time, double relative_speed
   spot.relative_speed = relative_speed;
 }
 
-Move SpotWalk::step(Spot& spot, const Container& container) const {
+/// b_s / (1 + L s): so many of the steps go sideways, the others straight up. The shear halfway decides, so that there
+/// are as many steps one way as the other between two places: sheared places are neither sought nor avoided.
+bool SpotWalk::goes_sideways(const Spot& spot, const Vector3& middle, const FlowField& flow) const {
+  if (parameters_.shear_length == 0.0) return true;
+  const double number = uniform(parameters_.seed, RandomPurpose::sideways, static_cast<std::uint64_t>(spot.id),
+                                static_cast<std::uint64_t>(spot.steps))[0];
+  return number * (1.0 + parameters_.shear_length * flow.shear(middle)) < 1.0;
+}
+
+Move SpotWalk::step(Spot& spot, const Container& container, const FlowField& flow) const {
   Move move;
   move.time = spot.next_step;
   move.spot = spot.id;
-  const Vector3 start = spot.position, target = start + step_vector(parameters_, spot.direction);
+  const Vector3 start = spot.position;
+  Vector3 target = start + step_vector(parameters_, spot.direction);
+  if (!goes_sideways(spot, 0.5 * (start + target), flow)) target = start + Vector3(0.0, 0.0, parameters_.step_height);
   spot.position = container.keep_spot_inside(start, target);
   // A spot that a wall has reflected goes on away from it, if it goes on its way.
   if (spot.position != target) spot.direction = opposite(spot.direction);

@@ -15,7 +15,11 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       next_birth_(walk_.time_of_birth(0, 0.0)),
       dilates_(parameters.dilation > 0.0),
       dilation_(parameters, container, diameter),
-      setting_interval_(dilates_ ? calibration::climb_between_settings * parameters.radius / parameters.speed : 0.0) {}
+      critical_(parameters, diameter),
+      shears_(parameters.shears()),
+      flow_(parameters, container, diameter),
+      setting_interval_(
+          dilates_ || shears_ ? calibration::climb_between_settings * parameters.radius / parameters.speed : 0.0) {}
 
 /// Returns whether the newborn spot was kept.
 bool Spots::bear_next(const Container& container, const Belongs& here) {
@@ -50,7 +54,7 @@ void Spots::step_until(double until, const Container& container,
   for (Place& place : places_) {
     if (place.removed) continue;
     moves.clear();
-    while (place.spot.next_step <= until) moves.push_back(walk_.step(place.spot, container));
+    while (place.spot.next_step <= until) moves.push_back(walk_.step(place.spot, container, flow_));
     if (!moves.empty()) visit(place.spot, moves);
   }
   queued_ = false;
@@ -90,6 +94,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container) {
     if (next_setting() <= std::min(event, time)) {
       Alone alone;
       set_relative_speeds(next_setting(), alone);
+      if (settings_ > 0) update_flow(setting_interval_, alone);
       ++settings_;
     } else if (event <= time && event == next_birth_) {
       bear_next(container, [](const Spot&) { return true; });
@@ -102,15 +107,43 @@ std::optional<Move> Spots::next_step(double time, const Container& container) {
   std::pop_heap(events_.begin(), events_.end());
   const std::size_t place = events_.back().place;
   events_.pop_back();
-  const Move move = walk_.step(places_[place].spot, container);
+  const Move move = walk_.step(places_[place].spot, container, flow_);
   queue(place);
   return move;
 }
 
-void Spots::remove(std::int64_t spot) {
+/// places_.end() if it is gone.
+std::vector<Spots::Place>::iterator Spots::find(std::int64_t spot) {
   const auto place = std::lower_bound(places_.begin(), places_.end(), spot,
                                       [](const Place& a, std::int64_t id) { return a.spot.id < id; });
-  if (place == places_.end() || place->spot.id != spot || place->removed) return;
+  return place == places_.end() || place->spot.id != spot || place->removed ? places_.end() : place;
+}
+
+Spots::Carried Spots::carry(const Move& move, int enclosed, const Container& container) {
+  Carried carried;
+  const auto place = critical_.on() || shears_ ? find(move.spot) : places_.end();
+  if (place == places_.end()) return carried;
+  carried.volume = place->spot.volume;
+  if (shears_) flow_.add(move, carried.volume);
+  if (!critical_.on()) return carried;
+  const double shear = shears_ ? flow_.shear(move.middle) : 0.0;
+  place->spot.volume = critical_.volume_after(carried.volume, move, enclosed, shear, container);
+  carried.left = static_cast<std::int64_t>((carried.volume - place->spot.volume) * CriticalState::volume_parts);
+  return carried;
+}
+
+void Spots::update_flow(double elapsed, Communicator& communicator) {
+  if (shears_) flow_.update(elapsed, communicator);
+}
+
+void Spots::replace_container(const Container& container) {
+  dilation_.replace_container(container);
+  flow_.replace_container(container);
+}
+
+void Spots::remove(std::int64_t spot) {
+  const auto place = find(spot);
+  if (place == places_.end()) return;
   place->removed = true;
   if (++removed_ > places_.size() / 16) close_gaps();
 }
@@ -153,6 +186,7 @@ void Spots::save(Bytes& bytes) const {
   append(bytes, live());
   append(bytes, settings_);
   dilation_.save(bytes);
+  flow_.save(bytes);
 }
 
 void Spots::restore(ByteReader& saved) {
@@ -161,8 +195,9 @@ void Spots::restore(ByteReader& saved) {
   take_in(take_spots(saved));
   settings_ = saved.take<std::int64_t>();
   dilation_.restore(saved);
+  flow_.restore(saved);
 }
 
-std::size_t Spots::memory() const { return bytes_in(places_, events_) + dilation_.memory(); }
+std::size_t Spots::memory() const { return bytes_in(places_, events_) + dilation_.memory() + flow_.memory(); }
 
 }  // namespace spot

@@ -12,6 +12,7 @@ enum class RandomPurpose : std::uint64_t {
   step = 2,      ///< when and where to step `step` of spot `id` goes
   settling = 3,  ///< to which side grain `id` rolls in sweep `step`
   fall = 4,      ///< how fast grain `id` falls
+  sideways = 5,  ///< whether step `step` of spot `id` goes sideways, where shear narrows the walk
 };
 
 /// Four uniform numbers in [0, 1) that depend on the arguments alone (Philox4x64-10, Salmon et al., SC11).

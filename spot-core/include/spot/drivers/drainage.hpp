@@ -111,6 +111,7 @@ class Drainage {
     ++counters_.moves;
     counters_.volume_moved += enclosed;
   }
+  void count_volume_left(std::int64_t parts) { counters_.volume_left += parts; }
   void count_sweep(std::size_t grains) {
     ++counters_.sweeps;
     counters_.grains_swept += static_cast<std::int64_t>(grains);

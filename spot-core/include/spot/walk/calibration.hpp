@@ -21,4 +21,33 @@ constexpr double slowest_relative_speed = 0.125, fastest_relative_speed = 4.0;
 /// far less than the spacing of the lattice on which spots are counted. Windows set them once each.
 constexpr double climb_between_settings = 0.1;
 
+/// While a spot at v_s climbs so many R_s, what FlowField remembers of earlier steps falls by a factor of e: 14 tau with
+/// the fitted parameters. A choice: long enough for hundreds of steps at each node, short beside the time in which the
+/// flow of a silo changes its shape.
+constexpr double climb_of_flow_memory = 10.0;
+
+/// Bounds of the critical packing fraction of grains: random loose packings begin at 0.55 with friction, random close ones end
+/// at 0.64; a little more on either side for grains of unequal size.
+constexpr double least_critical_fraction = 0.5, largest_critical_fraction = 0.7;
+
+/// The least exchange length in steps: with shorter ones a step leaves more than there is too little.
+constexpr double least_exchange_in_steps = 0.1;
+
+/// A packing's critical packing fraction is counted as if its walls stood so much farther in, in diameters: at this
+/// distance a bulk value gives the volumes that moves enclose in DEM's flow within 0.12 %, at any distance from the
+/// walls (grains lie in layers there, of which the first is half a diameter from the wall).
+constexpr double inset_of_walls = 0.14;
+
+/// So many R_s above the outlets spots leave and take up volume. Below, they converge, and DEM's packing is looser than
+/// anywhere else: by 0.03 at 4 to 8 d.
+constexpr double least_height_of_exchange = 2.0;
+
+/// A spot that encloses less than this share of what it would at the critical packing fraction is at the surface, not
+/// in a loose packing, and takes up nothing.
+constexpr double least_share_of_critical = 0.85;
+
+/// Bounds of the volume that a spot carries, over that of a newborn one. Choices: a spot that has left nearly all of it
+/// goes on climbing, to make good what others have left too much of; one must not dig a hole.
+constexpr double least_volume = 0.1, most_volume = 4.0;
+
 }  // namespace spot::calibration

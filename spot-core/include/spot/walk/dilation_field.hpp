@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <map>
 #include <vector>
 
 #include "spot/base/bytes.hpp"
 #include "spot/geometry/container.hpp"
 #include "spot/parallel/communicator.hpp"
+#include "spot/walk/node_lattice.hpp"
 #include "spot/walk/parameters.hpp"
 
 namespace spot {
@@ -22,10 +21,7 @@ namespace spot {
 /// A flow that brings more spots then has hardly more of them at a time, and starts narrow and fast, and widens as its
 /// sides dilate.
 ///
-/// Spots are counted on the nodes of a cubic lattice, of which one is the centre of the first outlet, R_s apart, but no
-/// closer than grains are; each is shared out between the eight nodes around it in proportion to its nearness to them
-/// along each axis, in whole 2^-24ths: sums are the same on any ranks. Where space repeats, so does the lattice: its
-/// spacing along that axis is the least from R_s on of which the period is a multiple.
+/// Spots are counted on the nodes of a NodeLattice, R_s apart, but no closer than grains are.
 class DilationField {
  public:
   /// `diameter`: of grains. The container must outlive the field, or be replaced.
@@ -51,33 +47,13 @@ class DilationField {
   std::size_t memory() const;
 
  private:
-  using Node = std::array<int, 3>;
-  struct Corner {
-    Node node;
-    std::int64_t weight;  // in 2^-24ths
-  };
-
-  /// Where it is along an axis, in lattice spacings.
-  double cell_of(const Vector3& point, std::size_t axis) const {
-    const auto i = static_cast<int>(axis);
-    return (point[i] - origin_[i]) / spacing_[i];
-  }
-  std::array<Corner, 8> corners(const Vector3& point) const;
-  bool counted(const Node& node) const;
-  std::size_t place(const Node& node) const;
-  double volume_of(const Node& node) const;
   void find_volumes();
-  /// Its image in the cell.
-  Node wrapped(Node node) const;
 
-  const Container* container_;
-  Vector3 origin_, spacing_;
-  Node period_ = {0, 0, 0};  // in nodes; 0 where nothing repeats
+  NodeLattice lattice_;
   double spot_volume_, reference_;
-  Node low_ = {0, 0, 0}, high_ = {0, 0, 0};  // of the nodes counted: from low_ to high_, exclusive
-  std::vector<std::int64_t> counts_;         // of spots, in 2^-24ths
-  std::vector<double> counted_volumes_;      // around the same nodes
-  mutable std::map<Node, double> volumes_;   // inside the walls, around the nodes asked for so far
+  NodeLattice::Box box_;                 // of the nodes counted
+  std::vector<std::int64_t> counts_;     // of spots, in 2^-24ths
+  std::vector<double> counted_volumes_;  // around the same nodes
 };
 
 }  // namespace spot

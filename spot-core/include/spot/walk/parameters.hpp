@@ -28,6 +28,15 @@ struct SpotParameters {
   /// c_0: spots climb at v_s where they take this share of the volume, and elsewhere in proportion to that share
   /// (DilationField). 0: they climb at v_s everywhere (2006).
   double dilation = 0.0;
+  /// phi_c: the packing fraction of what flows, away from walls and where nothing is sheared (CriticalState). 0: spots
+  /// carry the same volume all the way (2006).
+  double critical_fraction = 0.0;
+  /// Of climb, in which a spot leaves a share of its volume as large as that by which the packing is too dense (length).
+  double exchange_length = 0.0;
+  /// a: shear s for each length that grains fall (FlowField) lowers phi_c by a s, of itself (length).
+  double dilatancy = 0.0;
+  /// L: it narrows the walk, to b_s / (1 + L s) (length). 0: the walk does not depend on the flow (2006).
+  double shear_length = 0.0;
   bool together = false;  ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
   std::uint64_t seed = 1;
 
@@ -50,8 +59,14 @@ struct SpotParameters {
   /// or of as many as it encloses at the packing fraction of flow (length^3).
   double missing_volume(double diameter) const;
 
-  /// Throws InvalidParameter that names the first number outside its range.
+  /// Do spots have to know how the flow is sheared?
+  bool shears() const { return dilatancy > 0.0 || shear_length > 0.0; }
+
+  /// Throws InvalidParameter that names the first number outside its range, or two that exclude each other.
   void validate() const;
+
+ private:
+  void validate_critical_state() const;
 };
 
 /// dx that gives a diffusion length b_s with steps of height dz and persistence p: dx^2 = 4 b_s dz (1 - p) / (1 + p).

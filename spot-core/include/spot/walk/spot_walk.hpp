@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "spot/geometry/container.hpp"
+#include "spot/walk/flow_field.hpp"
 #include "spot/walk/move.hpp"
 #include "spot/walk/parameters.hpp"
 
@@ -18,6 +19,7 @@ struct Spot {
   double direction = 0.0;       ///< a uniform random number, for its direction
   double chance = 0.0;          ///< another, for whoever draws lots
   double relative_speed = 1.0;  ///< its speed over v_s
+  double volume = 1.0;          ///< that it carries, over that of a newborn one (CriticalState)
 };
 
 /// How spots are born and walk. Walks do not look at grains, and there is no state but the spot: all draws follow from
@@ -43,10 +45,11 @@ class SpotWalk {
 
   /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
   /// cell then; the middle of the step need not be.
-  Move step(Spot& spot, const Container& container) const;
+  Move step(Spot& spot, const Container& container, const FlowField& flow) const;
 
  private:
   void draw_next_step(Spot& spot) const;
+  bool goes_sideways(const Spot& spot, const Vector3& middle, const FlowField& flow) const;
 
   SpotParameters parameters_;
 };

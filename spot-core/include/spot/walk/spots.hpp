@@ -8,7 +8,9 @@
 
 #include "spot/base/bytes.hpp"
 #include "spot/parallel/communicator.hpp"
+#include "spot/walk/critical_state.hpp"
 #include "spot/walk/dilation_field.hpp"
+#include "spot/walk/flow_field.hpp"
 #include "spot/walk/spot_walk.hpp"
 
 namespace spot {
@@ -41,6 +43,17 @@ class Spots {
   void step_until(double until, const Container& container,
                   const std::function<void(const Spot&, const std::vector<Move>&)>& visit);
 
+  struct Carried {
+    double volume = 1.0;    ///< in the move, over that of a newborn spot
+    std::int64_t left = 0;  ///< in the packing, less what was taken up there, in CriticalState::volume_parts-ths
+  };
+  /// What the spot of a move carries in it; from then on it carries what it has not left there (CriticalState). For each
+  /// move once, in the order of a spot's moves. `enclosed`: grain volume (1024 = grain_volume).
+  Carried carry(const Move& move, int enclosed, const Container& container);
+
+  /// Collective. `elapsed` after the last time, spots learn how the flow is sheared now.
+  void update_flow(double elapsed, Communicator& communicator);
+
   /// There is nothing left above the spot. One that is gone already may be named again.
   void remove(std::int64_t spot);
 
@@ -53,7 +66,7 @@ class Spots {
   std::int64_t born() const { return born_; }
 
   /// Other walls; the spots stay.
-  void replace_container(const Container& container) { dilation_.replace_container(container); }
+  void replace_container(const Container& container);
 
   void save(Bytes& bytes) const;
   /// Takes in what save() appended, on each of several ranks maybe. Throws InvalidState if it is damaged.
@@ -75,6 +88,7 @@ class Spots {
   };
 
   bool bear_next(const Container& container, const Belongs& here);
+  std::vector<Place>::iterator find(std::int64_t spot);
   void queue_all();
   void queue(std::size_t place);
   void drop_removed_events();
@@ -88,6 +102,9 @@ class Spots {
   std::int64_t born_ = 0;
   bool dilates_;
   DilationField dilation_;
+  CriticalState critical_;
+  bool shears_;
+  FlowField flow_;
 
   // Of spots that step in the order of time.
   std::vector<Event> events_;  // a heap of next steps; those of removed spots are dropped when they come up

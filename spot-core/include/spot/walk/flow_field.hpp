@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "spot/base/bytes.hpp"
+#include "spot/geometry/container.hpp"
+#include "spot/parallel/communicator.hpp"
+#include "spot/walk/move.hpp"
+#include "spot/walk/node_lattice.hpp"
+#include "spot/walk/parameters.hpp"
+
+namespace spot {
+
+/// How fast grains fall from place to place, as told by what spots have carried up, and how that is sheared.
+///
+/// Grains fall past a place as fast as spots carry free volume up there, so u, the volume that spots have carried for
+/// the volume inside the walls, is proportional to their speed. The shear for each length that they fall is
+///
+///     s = |grad_h u| / u    (1 / length)
+///
+/// with grad_h across the vertical. It says nothing of how fast the flow is: at a given place it stays as it is when
+/// more or fewer spots come. In DEM both the packing fraction and the width of the flow follow it
+/// (docs/notes/2026-11-28-flow-law.md).
+///
+/// Steps are counted on the nodes of a NodeLattice, R_s apart, but no closer than grains are; those that were made
+/// longer ago count for less, by a factor of e after calibration::climb_of_flow_memory.
+class FlowField {
+ public:
+  /// `diameter`: of grains. The container must outlive the field, or be replaced.
+  FlowField(const SpotParameters& parameters, const Container& container, double diameter);
+
+  /// Counts a step of a spot that carries `volume`, over that of a newborn one.
+  void add(const Move& move, double volume);
+
+  /// Collective. Takes in the steps that ranks have added since the last time, which is so long ago.
+  void update(double elapsed, Communicator& communicator);
+
+  /// s at a point (1 / length); 0 where no spot has been. As of the last update.
+  double shear(const Vector3& point) const;
+
+  /// Works out the volume inside the walls anew, as after these changed.
+  void replace_container(const Container& container);
+
+  /// On several ranks only after an update.
+  void save(Bytes& bytes) const;
+  /// Throws InvalidState if what save() appended is damaged.
+  void restore(ByteReader& saved);
+
+  std::size_t memory() const;
+
+ private:
+  struct Step {
+    Vector3 middle;
+    std::int64_t carried;  // 2^-16ths of a newborn spot's volume, times step heights
+  };
+
+  void grow_to(const NodeLattice::Box& box);
+  void find_volumes();
+  void find_shear();
+  double flow(const NodeLattice::Node& node, double otherwise) const;
+  double shear_along(int axis, const NodeLattice::Node& node, double here) const;
+
+  NodeLattice lattice_;
+  double memory_time_, step_height_;
+  std::vector<Step> added_;
+  NodeLattice::Box box_;         // of the nodes where steps have been counted
+  std::vector<double> carried_;  // at these nodes: sums of steps, each counted for less the older it is
+  std::vector<double> volumes_;  // inside the walls, around the same nodes; 0 where there is next to none
+  std::vector<double> shear_;    // at the same nodes
+};
+
+}  // namespace spot

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/walk/flow_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spot/base/elementary.hpp"
+#include "spot/base/errors.hpp"
+#include "spot/base/memory.hpp"
+#include "spot/walk/calibration.hpp"
+
+namespace spot {
+
+namespace {
+
+constexpr double carried_parts = 1 << 16;
+
+/// Of a lattice cell: with less of it inside the walls, a node is taken to be in the wall.
+constexpr double least_part_inside = 0.05;
+
+}  // namespace
+
+FlowField::FlowField(const SpotParameters& parameters, const Container& container, double diameter)
+    : lattice_(container, std::max(parameters.radius, diameter)),
+      memory_time_(calibration::climb_of_flow_memory * parameters.radius / parameters.speed),
+      step_height_(parameters.step_height) {}
+
+void FlowField::add(const Move& move, double volume) {
+  const double carried = volume * (move.step.z() / step_height_);
+  added_.push_back({move.middle, static_cast<std::int64_t>(std::nearbyint(carried * carried_parts))});
+}
+
+void FlowField::update(double elapsed, Communicator& communicator) {
+  std::vector<Vector3> middles;
+  for (const Step& step : added_) middles.push_back(step.middle);
+  const NodeLattice::Box box = lattice_.around(middles, communicator);
+  if (box.size() > 0) grow_to(box);
+  if (box_.size() == 0) return;
+  std::vector<std::int64_t> sums(box_.size(), 0);
+  for (const Step& step : added_)
+    for (const NodeLattice::Corner& corner : lattice_.corners(step.middle))
+      sums[box_.place(corner.node)] += step.carried * (corner.weight >> 8);
+  added_.clear();
+  sums = communicator.sum(std::move(sums));
+  const double kept = exp(-elapsed / memory_time_);
+  for (std::size_t k = 0; k < sums.size(); ++k) carried_[k] = kept * carried_[k] + static_cast<double>(sums[k]);
+  find_shear();
+}
+
+void FlowField::grow_to(const NodeLattice::Box& box) {
+  NodeLattice::Box grown = box;
+  if (box_.size() > 0)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      grown.low[axis] = std::min(box.low[axis], box_.low[axis]);
+      grown.high[axis] = std::max(box.high[axis], box_.high[axis]);
+    }
+  if (grown.low == box_.low && grown.high == box_.high) return;
+  std::vector<double> carried(grown.size(), 0.0);
+  box_.visit([&](const NodeLattice::Node& node, std::size_t k) { carried[grown.place(node)] = carried_[k]; });
+  box_ = grown;
+  carried_ = std::move(carried);
+  find_volumes();
+}
+
+void FlowField::find_volumes() {
+  volumes_.assign(box_.size(), 0.0);
+  box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
+    const double volume = lattice_.volume(node);
+    if (volume > least_part_inside * lattice_.cell_volume()) volumes_[k] = volume;
+  });
+}
+
+/// At a node, or `otherwise` in walls, across which nothing is sheared.
+double FlowField::flow(const NodeLattice::Node& unwrapped, double otherwise) const {
+  const NodeLattice::Node node = lattice_.wrapped(unwrapped);
+  if (!box_.contains(node))
+    return lattice_.volume(node) > least_part_inside * lattice_.cell_volume() ? 0.0 : otherwise;
+  const std::size_t k = box_.place(node);
+  return volumes_[k] > 0.0 ? carried_[k] / volumes_[k] : otherwise;
+}
+
+/// Between 0 and two over the spacing.
+double FlowField::shear_along(int axis, const NodeLattice::Node& node, double here) const {
+  NodeLattice::Node before = node, after = node;
+  --before[static_cast<std::size_t>(axis)];
+  ++after[static_cast<std::size_t>(axis)];
+  const double low = flow(before, here), high = flow(after, here);
+  const double mean = 0.25 * (low + high) + 0.5 * here;
+  return mean > 0.0 ? (high - low) / (2.0 * lattice_.spacing()[axis] * mean) : 0.0;
+}
+
+void FlowField::find_shear() {
+  shear_.assign(box_.size(), 0.0);
+  box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
+    if (volumes_[k] == 0.0) return;
+    const double here = carried_[k] / volumes_[k];
+    const double x = shear_along(0, node, here), y = shear_along(1, node, here);
+    shear_[k] = std::sqrt(x * x + y * y);
+  });
+}
+
+double FlowField::shear(const Vector3& point) const {
+  double sum = 0.0, volume = 0.0;
+  for (const NodeLattice::Corner& corner : lattice_.corners(point)) {
+    if (!box_.contains(corner.node)) continue;
+    const std::size_t k = box_.place(corner.node);
+    const double weight = static_cast<double>(corner.weight) * volumes_[k];
+    sum += weight * shear_[k];
+    volume += weight;
+  }
+  return volume > 0.0 ? sum / volume : 0.0;
+}
+
+void FlowField::replace_container(const Container& container) {
+  lattice_.replace_container(container);
+  find_volumes();
+  find_shear();
+}
+
+void FlowField::save(Bytes& bytes) const {
+  append(bytes, box_);
+  append(bytes, carried_);
+  append(bytes, static_cast<std::uint64_t>(added_.size()));
+  for (const Step& step : added_) {
+    append(bytes, step.middle);
+    append(bytes, step.carried);
+  }
+}
+
+void FlowField::restore(ByteReader& saved) {
+  box_ = take_box(saved);
+  carried_ = saved.take_all<double>();
+  if (carried_.size() != box_.size()) throw InvalidState("the saved flow is damaged");
+  for (auto n = saved.take<std::uint64_t>(); n > 0; --n) {
+    const auto middle = saved.take<Vector3>();
+    added_.push_back({middle, saved.take<std::int64_t>()});
+  }
+  find_volumes();
+  find_shear();
+}
+
+std::size_t FlowField::memory() const {
+  return bytes_in(added_, carried_, volumes_, shear_) + lattice_.memory();
+}
+
+}  // namespace spot
