@@ -9,8 +9,12 @@ from ..statistics.counts import SLAB
 from ..statistics.interval import STEADY_FROM
 from ..statistics.mean_flow import COVER
 from ..statistics.neighbours import RDF_RANGE
-from ..statistics.snapshot import LAG_TAU
+from ..statistics.snapshot import LAG_TAU, TIME_TOLERANCE
 from .by_name import by_name
+
+
+def _stored(view, concept, name):
+    return "the statistics are of an older format, without it" if concept.NAME in view.run.lacking else None
 
 
 def _grains(view, concept, name):
@@ -72,9 +76,20 @@ def _end(view, concept, name):
     return None if covered else f"no grain is above z = {height} d at the end"
 
 
+def _uncensored(view, concept, name):
+    start = view.interval.start
+    return f"grains that leave from {start:g} tau on may have stayed longer than since the start"
+
+
+def _reach(view, concept, name):
+    end, last = float(re.search(r"_(\d+)tau", name)[1]), view.run.times[view.common[-1]]
+    return f"the run ends at {last:g} tau" if last < end - TIME_TOLERANCE else None
+
+
 # By the names that the statistics have for them in NEEDS. What a need says comes before what the ones behind it say.
-NEEDS = {"grains": _grains, "pairs": _pairs, "height": _height, "outflow": _outflow, "structure": _structure, "core": _core,
-         "cells": _cells, "start": _start, "steady": _steady, "end": _end}
+NEEDS = {"stored": _stored, "grains": _grains, "pairs": _pairs, "height": _height, "outflow": _outflow, "structure": _structure, "core": _core,
+         "cells": _cells, "start": _start, "steady": _steady, "end": _end,
+         "uncensored": _uncensored, "reach": _reach}
 
 
 def why(view, concept, name):
