@@ -21,6 +21,12 @@ def families_met(verdicts):
     return sum(met == total for met, total in judged), len(judged)
 
 
+def describe(windows):
+    """The intervals in words, of window -> (start, end)."""
+    spans = [f"{name}: {start:g} to {end:g} tau" for name, (start, end) in windows.items()]
+    return "; ".join(spans) or "the runs are too short for any interval of steady flow"
+
+
 def rows(columns):
     """Lists of texts, the heading first: a line for each family with how many of its bounds are met, and one for each quantity.
 
@@ -73,4 +79,4 @@ def as_html(table):
         cells = (html.escape(cell.replace("**", "")).replace("+-", "&plusmn;") for cell in line)
         mark = ' class="missed"' if any(cell.endswith("**NO**") for cell in line) else ""
         lines.append(f"<tr{mark}>" + "".join(f"<{tag}>{cell}</{tag}>" for cell in cells) + "</tr>\n")
-    return "<table>\n" + "".join(lines) + "</table>\n"
+    return '<table class="families">\n' + "".join(lines) + "</table>\n"

@@ -92,15 +92,20 @@ NEEDS = {"stored": _stored, "grains": _grains, "pairs": _pairs, "height": _heigh
          "uncensored": _uncensored, "reach": _reach}
 
 
+UNTOLD = "the interval does not tell it"
+
+
 def why(view, concept, name):
     """Why the quantity ``name`` of the module ``concept`` is unknown in ``view``, an IntervalView."""
     reasons = (NEEDS[need](view, concept, name) for need in by_name(concept.NEEDS, name, ()))
-    return next((reason for reason in reasons if reason), "the interval does not tell it")
+    return next((reason for reason in reasons if reason), UNTOLD)
 
 
 def of_runs(views, concept, name):
     """The same of several runs, name of the run -> view."""
     reasons = {run: why(view, concept, name) for run, view in views.items()}
+    if set(reasons.values()) != {UNTOLD}:  # of a number that needs both, the run that has what it needs is not the cause
+        reasons = {run: reason for run, reason in reasons.items() if reason != UNTOLD}
     if len(set(reasons.values())) == 1 and len(reasons) > 1:
         return next(iter(reasons.values()))
     return "; ".join(f"{run}: {reason}" for run, reason in reasons.items())

@@ -39,13 +39,13 @@ def quantities(view):
 
 
 def series(view):
-    """name -> times (n,) and samples (n,) at the common times: what the report shows to the end of the run."""
+    """name -> times (n,) and samples (n,) at the common times: what a report shows to the end of the run."""
     run, common = view.run, view.common
     surface, order = (run.measured[concept.NAME] for concept in (free_surface, bond_order))
-    low, high = (radial_distribution.ORDER_PEAKS["sqrt3"] + side * radial_distribution.PEAK_HALF_WIDTH for side in (-1, 1))
-    peak = radial_distribution.mean_between(run, radial_distribution.rdf(run, radial_distribution.columns(run)), low, high)
-    shared = np.isin(surface.times, run.times[common])
-    return {"packing_fraction": (run.times[common], fractions(run)[common]),
-            "crystal_share": (order.times[np.isin(order.times, run.times[common])], order.share[np.isin(order.times, run.times[common])]),
-            "rdf_at_sqrt3": (run.times[common], peak[common]),
-            "surface_angle": (surface.times[shared], free_surface.angle(surface.x, surface.heights[shared]))}
+    place, half_width = radial_distribution.ORDER_PEAKS["sqrt3"], radial_distribution.PEAK_HALF_WIDTH
+    curves = radial_distribution.rdf(run, radial_distribution.columns(run))
+    samples = {"packing_fraction": (run.times, fractions(run)), "crystal_share": (order.times, order.share),
+               "rdf_at_sqrt3": (run.times, radial_distribution.mean_between(run, curves, place - half_width, place + half_width)),
+               "surface_angle": (surface.times, free_surface.angle(surface.x, surface.heights))}
+    shared = {name: np.isin(times, run.times[common]) for name, (times, _) in samples.items()}
+    return {name: (times[shared[name]], values[shared[name]]) for name, (times, values) in samples.items()}
