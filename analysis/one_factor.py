@@ -13,10 +13,7 @@ require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import numpy as np  # noqa: E402  (only after the check above)
 
-from spot_analysis.base.errors import AnalysisError  # noqa: E402
-from spot_analysis.commands import command_line  # noqa: E402
-from spot_analysis.reading.log import reason_of_failure  # noqa: E402
-from spot_analysis.reading.scene import load_scene  # noqa: E402
+from spot_analysis.commands import command_line, deck_run  # noqa: E402
 from spot_analysis.report import comparison  # noqa: E402
 from spot_analysis.statistics import (bond_angles, bond_order, counts, front, packing, particle_diffusion,  # noqa: E402
                                       profile_width, radial_distribution, run_statistics, thickness, velocity_correlation)

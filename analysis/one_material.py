@@ -18,7 +18,7 @@ from spot_analysis.base.errors import AnalysisError  # noqa: E402
 from spot_analysis.commands import command_line, deck_run  # noqa: E402
 from spot_analysis.reading.dump import read_frames  # noqa: E402
 from spot_analysis.reading.scene import load_scene  # noqa: E402
-from spot_analysis.report import families, family_table  # noqa: E402
+from spot_analysis.report import criteria, families, family_table  # noqa: E402
 from spot_analysis.report.by_name import by_name  # noqa: E402
 from spot_analysis.statistics import run_statistics  # noqa: E402
 
@@ -38,7 +38,7 @@ class Reference:
     statistics, twins : files of measure.py in examples/silo; twins are further DEM runs of the same silo
     outflow : DEM's, grains a tau, from which the births of spots follow: nu_s = F / (w N), with the deck's own factor
     variables : of the deck; packing : file in examples/silo
-    windows : window -> (start, end), tau; by default those of ``families.WINDOWS`` that the run reaches
+    windows : window -> (start, end), tau; by default those of ``criteria.WINDOWS`` that the run reaches
     not_carried : pattern of the labels of criteria -> why DEM's run cannot carry them, besides the time at which it ends
     """
 
@@ -59,7 +59,7 @@ class Reference:
         return [run_statistics.load(os.path.join(SILO, path)) for path in (self.statistics, *self.twins)]
 
     def windows_of(self, run):
-        return self.windows or families.windows_of(run.times[-1])
+        return self.windows or criteria.windows_of(run.times[-1])
 
     def deck_variables(self, seed, last):
         """name -> text; last : tau, when the run ends."""
@@ -188,7 +188,7 @@ def run_all(options, dems):
 def rows_table(dems):
     """Which criteria each reference carries, as Markdown, with the reasons why not."""
     reasons, lines = [], [["", "bound", *dems]]
-    for criterion in families.CRITERIA:
+    for criterion in criteria.CRITERIA:
         cells = []
         for name, (run, *_) in dems.items():
             reason = REFERENCES[name].why_not(criterion, run)
@@ -210,7 +210,7 @@ def heading(name, run):
 def judge(name, dems, runs):
     """Criterion -> Verdict of ``runs`` against DEM."""
     reference = REFERENCES[name]
-    reasons = {criterion.label: reason for criterion in families.CRITERIA if (reason := reference.why_not(criterion, dems[0]))}
+    reasons = {criterion.label: reason for criterion in criteria.CRITERIA if (reason := reference.why_not(criterion, dems[0]))}
     return families.judge(dems, runs, reference.windows_of(dems[0]), reasons)
 
 

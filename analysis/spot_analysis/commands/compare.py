@@ -6,7 +6,7 @@ import os
 
 from ..base.errors import AnalysisError
 from ..base.progress import Progress
-from ..report import comparison, families, family_table, table
+from ..report import comparison, criteria, families, family_table, table
 from ..report.comparison_json import write_json
 from ..report.figures import draw_pictures
 from ..report.page import write_html
@@ -53,7 +53,7 @@ def compare():
     progress = Progress("report")
     rows = comparison.compare(views["DEM"], views["spot"], progress)
     progress("judging families")
-    windows = families.windows_of(times[-1])
+    windows = criteria.windows_of(times[-1])
     verdicts = families.judge([dem], [spot], windows)
     by_family = family_table.rows({"spot / DEM": verdicts})
 

@@ -60,4 +60,4 @@ def kept(stored, settings, label, make, concepts=run_statistics.CONCEPTS, times=
     os.replace(f"{stored}.part", stored)
     if not keep_dumps:
         remove(dumps)
-    return run
+    return run_statistics.load(stored)  # as later calls do: the file has single precision

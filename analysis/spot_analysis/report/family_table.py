@@ -3,7 +3,7 @@
 
 import html
 
-from .families import CRITERIA
+from .criteria import CRITERIA
 
 
 def family_counts(verdicts):
@@ -37,7 +37,7 @@ def rows(columns):
     table, family = [["", "bound", *columns]], None
     for criterion in CRITERIA:
         found = [verdicts.get(criterion) for verdicts in columns.values()]
-        if not any(one is not None and one.spot.value is not None for one in found):
+        if not any(_is_known(one) for one in found):
             continue
         if criterion.family != family:
             family = criterion.family
@@ -53,16 +53,23 @@ def _score(met, judged):
     return f"met, {judged}" if met == judged else f"**{met} of {judged}**"
 
 
+def _is_known(verdict):
+    return verdict is not None and (verdict.spot.value is not None or verdict.met is not None)
+
+
 def _cell(verdict):
-    if verdict is None or verdict.spot.value is None:
+    if not _is_known(verdict):
         return "-"
     text = number(verdict.spot) + (f" / {number(verdict.dem)}" if verdict.dem.value is not None else "")
     return text + {True: " yes", False: " **NO**", None: ""}[verdict.met]
 
 
 def number(value):
-    """A Value with its error, if it has one."""
-    return f"{value.value:.4g}" + (f" +- {value.error:.2g}" if value.error else "")
+    """A Value with its error, if it has one that is not of rounding."""
+    if value.value is None:
+        return "unknown"
+    is_certain = not value.error or value.error < 1e-9 * abs(value.value)
+    return f"{value.value:.4g}" + ("" if is_certain else f" +- {value.error:.2g}")
 
 
 def markdown(table):
