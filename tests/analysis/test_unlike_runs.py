@@ -121,7 +121,7 @@ def test_scripts_take_snapshots_without_grains(full, tmp_path):
     found = json.loads((tmp_path / "out" / "comparison.json").read_text())["quantities"]
     assert found["surface_angle_last"]["spot"] is None and found["grains_left"]["spot"] == 0
     beside = script("side_by_side.py", full.path, f"empty={source}")
-    assert "arrival_30d" in left_out(beside)
+    assert "empty: arrival_30d, early" in "\n".join(warnings_of(beside))
     for refused, cause in ((script("calibrate.py", source, "--from", 0), "error: "),
                            (script("cell_imprint.py", source, "--from", TIMES[6], "--to", TIMES[-1]), "error: no grains in the bulk")):
         assert refused.returncode == 1 and "Traceback" not in refused.stderr
