@@ -64,7 +64,7 @@ class Reference:
     def deck_variables(self, seed, last):
         """name -> text; last : tau, when the run ends."""
         return {"packing": os.path.abspath(os.path.join(SILO, self.packing)), "births": f"{self.births():g}", **self.variables,
-                "seed": str(seed), "time": f"{last * TAU:.6g}"}
+                "seed": str(seed), "time": f"{last * TAU:.9g}"}
 
     def why_not(self, criterion, run):
         """Why the reference, RunStatistics, does not carry a Criterion; None if it does."""
@@ -167,7 +167,7 @@ def run_baseline(model, name, times, options):
         deck_run.remove(packing)
 
     return deck_run.kept(os.path.join(options.output, f"{name}.{model}.npz"),
-                         deck_run.settings_of(options.deck, {"model": model, "outflow": reference.outflow}, times),
+                         deck_run.settings_of(options.deck, {**reference.deck_variables(1, 2.0), "model": model}, times),
                          f"{name}, {model}", make, times=times)
 
 

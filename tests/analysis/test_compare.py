@@ -114,7 +114,7 @@ def test_table_names_interval_and_every_quantity(report):
     judged = [quantity["met"] for quantity in content["quantities"].values() if quantity["met"] is not None]
     assert len(judged) == 2  # the others are for steady flow, which starts later
     assert f"\nbounds met: {sum(judged)} of 2; " in stdout
-    assert "; 17 not judged: most need steady flow, from 40 tau on" in stdout
+    assert "; 34 not judged: most need steady flow, from 40 tau on" in stdout
 
 
 def test_curves(report):

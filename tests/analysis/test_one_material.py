@@ -65,7 +65,7 @@ def test_table(call, decks, output):
     assert sorted(path.name for path in output.iterdir()) == ["plug.1.npz", "plug.2.npz", "plug.kinematic.npz", "plug.nothing.npz", "table.md"]
     np.testing.assert_allclose(run_statistics.load(output / "plug.2.npz").times, TIMES)
     asked = (decks / "called").read_text().splitlines()[0]
-    for words in ("-var births 423", "-var half_width 10", "-var seed", f"-var time {26 * one_material.TAU:.6g}", "-var options accuracy normal "):
+    for words in ("-var births 423", "-var half_width 10", "-var seed", f"-var time {26 * one_material.TAU:.9g}", "-var options accuracy normal "):
         assert words in asked + " "
 
 
