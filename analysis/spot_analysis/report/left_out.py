@@ -76,9 +76,12 @@ def _end(view, concept, name):
     return None if covered else f"no grain is above z = {height} d at the end"
 
 
+def _filled(view, concept, name):
+    return "grains do not fill the cells of the map at any height that counts"
+
+
 def _uncensored(view, concept, name):
-    start = view.interval.start
-    return f"grains that leave from {start:g} tau on may have stayed longer than since the start"
+    return f"grains that leave from {view.interval.start:g} tau on may have stayed longer than since the start"
 
 
 def _reach(view, concept, name):
@@ -88,7 +91,7 @@ def _reach(view, concept, name):
 
 # By the names that the statistics have for them in NEEDS. What a need says comes before what the ones behind it say.
 NEEDS = {"stored": _stored, "grains": _grains, "pairs": _pairs, "height": _height, "outflow": _outflow, "structure": _structure, "core": _core,
-         "cells": _cells, "start": _start, "steady": _steady, "end": _end,
+         "cells": _cells, "filled": _filled, "start": _start, "steady": _steady, "end": _end,
          "uncensored": _uncensored, "reach": _reach}
 
 

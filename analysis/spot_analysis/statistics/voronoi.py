@@ -26,7 +26,7 @@ MEANING = {
     "packing_axis_less_shoulder": "on the axis less where the flow is sheared, z = 24-68 d",
     "packing_profile_rms": "rms difference along the axis, z = 4-70 d",
 }
-NEEDS = {"*": ("cells", "structure")}
+NEEDS = {"packing_*": ("cells", "filled"), "*": ("cells", "structure")}
 
 
 class Measurement:
