@@ -22,6 +22,8 @@ from spot_analysis.statistics.snapshot import LAG_TAU  # noqa: E402
 STEP = 0.05  # tau; below the time in which a grain at the orifice falls by a tenth of a diameter
 TIMESTEP = 1e-4  # tau, of one step of TIMESTEP in the dumps, as in the DEM reference
 OUTLET = -2.0  # d, where grains are taken out
+DIFFUSION = 1.15  # d; b, half the slope of the variance of DEM's v_z profile
+START = 2.0  # d^2; variance of the profile at z = 0
 
 
 def parse_arguments():
@@ -31,9 +33,9 @@ def parse_arguments():
     parser.add_argument("-o", "--output", required=True, metavar="FOLDER", help="for dumps and scene.json, in d and tau")
     parser.add_argument("--time", type=float, default=90.0, metavar="TAU", help="(default: %(default)g tau)")
     parser.add_argument("--outflow", type=float, default=69.6, metavar="F", help="grains a tau (default: that of DEM)")
-    parser.add_argument("--diffusion", type=float, default=1.15, metavar="B",
+    parser.add_argument("--diffusion", type=float, default=DIFFUSION, metavar="B",
                         help="length b, d (default: %(default)g, half the slope of the variance of DEM's v_z profile)")
-    parser.add_argument("--start", type=float, default=2.0, metavar="D2",
+    parser.add_argument("--start", type=float, default=START, metavar="D2",
                         help="variance of the profile at z = 0, d^2 (default: %(default)g)")
     command_line.add_scene_options(parser)
     return parser.parse_args()
@@ -75,31 +77,41 @@ def check(options):
             raise AnalysisError(f"--{name} is {getattr(options, name):g} but must be positive and finite")
 
 
+def write_baseline(folder, model, packing, scene, times, outflow, diffusion=DIFFUSION, start=START):
+    """Dumps of "nothing" or "kinematic" in d and tau; returns the number of grains at the end.
+
+    packing : Frame at rest; scene : its Scene; times : (n,) tau, of the snapshots, from 0 on
+    outflow : grains a tau; diffusion : b, d; start : variance of the profile at z = 0, d^2
+    """
+    ids, positions = packing.ids, scene.positions(packing.positions)
+    container = scene.container()
+    slab = (np.abs(positions[:, 0]) < 15) & (positions[:, 2] > 15) & (positions[:, 2] < 45)
+    if model == "kinematic" and not slab.any():
+        raise AnalysisError("the packing: no grain in |x| < 15 d, 15 d < z < 45 d, whose density makes the outflow a flux")
+    os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, "scene.json"), "w", encoding="utf-8") as handle:
+        json.dump({"program": f"baseline: {model}", "diameter": 1.0, "gravity": 1.0, "timestep": TIMESTEP,
+                   "half_width_x": container.half_width, "half_depth_y": container.half_depth,
+                   "orifice_radius": container.orifice_radius}, handle)
+    flux = outflow / max(slab.sum(), 1) * 30 * 30  # over the depth; the density is that of the slab
+    for time, before in zip(times, [times[0], *times]):
+        if model == "kinematic":
+            positions = follow(positions, time - before,
+                               lambda places: kinematic_velocity(places, flux, diffusion, start))
+            left = positions[:, 2] > OUTLET
+            ids, positions = ids[left], positions[left]
+        write_frame(folder, time, ids, positions)
+    return len(ids)
+
+
 def main():
     options = parse_arguments()
     check(options)
     scene = command_line.scene_from_options(options, options.packing)
-    frame = next(read_frames(options.packing))
-    ids, positions = frame.ids, scene.positions(frame.positions)
-    container = scene.container()
-    here = np.abs(positions[:, 0]) < 15
-    slab = here & (positions[:, 2] > 15) & (positions[:, 2] < 45)
-    if options.model == "kinematic" and not slab.any():
-        raise AnalysisError(f"{options.packing}: no grain in |x| < 15 d, 15 d < z < 45 d, whose density makes the outflow a flux")
-    flux = 0 if options.model == "nothing" else options.outflow / (slab.sum() / (30 * 30 * 2 * container.half_depth)) / (2 * container.half_depth)
-    os.makedirs(options.output, exist_ok=True)
-    with open(os.path.join(options.output, "scene.json"), "w", encoding="utf-8") as handle:
-        json.dump({"program": f"baseline: {options.model}", "diameter": 1.0, "gravity": 1.0, "timestep": TIMESTEP,
-                   "half_width_x": container.half_width, "half_depth_y": container.half_depth,
-                   "orifice_radius": container.orifice_radius}, handle)
-    for number in range(int(options.time / LAG_TAU + 1e-9) + 1):
-        if number and options.model == "kinematic":
-            positions = follow(positions, LAG_TAU,
-                               lambda places: kinematic_velocity(places, flux, options.diffusion, options.start))
-            left = positions[:, 2] > OUTLET
-            ids, positions = ids[left], positions[left]
-        write_frame(options.output, number * LAG_TAU, ids, positions)
-    print(f"{options.output}: {number + 1} snapshots of {len(ids)} grains at the end")
+    times = np.arange(int(options.time / LAG_TAU + 1e-9) + 1) * LAG_TAU
+    grains = write_baseline(options.output, options.model, next(read_frames(options.packing)), scene, times, options.outflow,
+                            options.diffusion, options.start)
+    print(f"{options.output}: {len(times)} snapshots of {grains} grains at the end")
 
 
 if __name__ == "__main__":

@@ -5,9 +5,6 @@
 import argparse
 import math
 import os
-import shlex
-import shutil
-import subprocess
 import sys
 
 from spot_analysis.base.interpreter import require_packages
@@ -16,16 +13,12 @@ require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import numpy as np  # noqa: E402  (only after the check above)
 
-from spot_analysis.base.errors import AnalysisError  # noqa: E402
-from spot_analysis.commands import command_line  # noqa: E402
-from spot_analysis.reading.log import reason_of_failure  # noqa: E402
-from spot_analysis.reading.scene import load_scene  # noqa: E402
+from spot_analysis.commands import command_line, deck_run  # noqa: E402
 from spot_analysis.report import comparison  # noqa: E402
 from spot_analysis.statistics import (bond_angles, bond_order, counts, front, packing, particle_diffusion,  # noqa: E402
                                       profile_width, radial_distribution, run_statistics, thickness, velocity_correlation)
 from spot_analysis.statistics.interval import choose_interval, common_times  # noqa: E402
 from spot_analysis.statistics.interval_view import IntervalView  # noqa: E402
-from spot_analysis.statistics.measuring import measure_dumps  # noqa: E402
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 MEASURED = (velocity_correlation, particle_diffusion, bond_angles, bond_order, thickness)
@@ -87,28 +80,17 @@ def parse_arguments():
     return parser.parse_args()
 
 
-def run_deck(options, choice, seed):
+def run_choice(options, choice, seed):
     """Statistics of a run of the deck, kept in the output folder; the dumps are not."""
     name = f"{choice.replace(' ', '_').replace('%', 'percent')}.{seed}"
-    stored = os.path.join(options.output, f"{name}.npz")
-    if not os.path.exists(stored):
-        dumps = os.path.abspath(os.path.join(options.output, name))
-        variables = {"seed": str(seed), "out": dumps, **CHOICES[choice]}
-        variables["options"] = f"accuracy normal {CHOICES[choice].get('options', '')}"
-        if options.time:
-            variables["time"] = str(options.time * TAU)
-        if options.parameters:
-            variables["parameters"] = os.path.abspath(options.parameters)
-        words = [word for key, value in variables.items() for word in ("-var", key, value)]
-        done = subprocess.run([*shlex.split(options.lmp), "-in", os.path.basename(options.deck), "-log", "none", *words],
-                              cwd=os.path.dirname(os.path.abspath(options.deck)), capture_output=True, text=True)
-        if done.returncode != 0:
-            raise AnalysisError(f"lmp failed on '{choice}': {reason_of_failure(done.stdout + done.stderr)}")
-        measure_dumps(dumps, load_scene(dumps), name, {"source": choice}, command_line.print_warning,
-                               MEASURED).save(stored)
-        if not options.dumps:
-            shutil.rmtree(dumps)
-    return run_statistics.load(stored)
+    variables = {"seed": str(seed), **CHOICES[choice], "options": f"accuracy normal {CHOICES[choice].get('options', '')}"}
+    if options.time:
+        variables["time"] = str(options.time * TAU)
+    if options.parameters:
+        variables["parameters"] = os.path.abspath(options.parameters)
+    return deck_run.kept(os.path.join(options.output, f"{name}.npz"), deck_run.settings_of(options.deck, variables), choice,
+                         lambda dumps: deck_run.run_deck(options.lmp, options.deck, variables, dumps, choice), MEASURED,
+                         keep_dumps=options.dumps)
 
 
 def rows(dem, spot, start=None, end=None):
@@ -143,7 +125,7 @@ def main():
     dem = run_statistics.load(options.dem)
     headings = [heading for heading, _ in QUANTITIES.values()]
     for number, choice in enumerate(options.only):
-        found = [numbers(dem, run_deck(options, choice, seed)) for seed in options.seeds]
+        found = [numbers(dem, run_choice(options, choice, seed)) for seed in options.seeds]
         if number == 0:
             print("| | " + " | ".join(headings) + " |\n" + "|---" * (len(headings) + 1) + "|")
             print("| DEM | " + " | ".join(text([found[0][name][0]], factor) for name, (_, factor) in QUANTITIES.items()) + " |")

@@ -63,7 +63,8 @@ def test_schema(report):
                 "outflow_fano", "arrival_30d", "arrival_60d", "arrival_90d", "variance_slope", "variance_intercept",
                 "correlation_length", "correlation_rms", "particle_diffusion", "badness_ratio", "rdf_l2_ratio", "g3_l2_ratio",
                 "crystal_share", "voronoi_fraction", "speed_wall_over_middle", "surface_angle", "stagnant_boundary_10d",
-                "residence_median_10d", "unlike_neighbours", "drained_height_mean"}
+                "residence_median_10d", "unlike_neighbours", "drained_height_mean", "frame_velocity_rms",
+                "frame_correlation_rms", "packing_axis_less_shoulder", "packing_profile_rms"}
     assert expected <= set(content["quantities"])
     assert content["interval"] == {"from": 0, "to": 24, "unit": "tau", "kind": "everything", "snapshots": 13,
                                    "common_from": 0, "common_to": 24}
@@ -113,7 +114,7 @@ def test_table_names_interval_and_every_quantity(report):
     judged = [quantity["met"] for quantity in content["quantities"].values() if quantity["met"] is not None]
     assert len(judged) == 2  # the others are for steady flow, which starts later
     assert f"\nbounds met: {sum(judged)} of 2; " in stdout
-    assert "; 17 not judged: most need steady flow, from 40 tau on" in stdout
+    assert "; 34 not judged: most need steady flow, from 40 tau on" in stdout
 
 
 def test_curves(report):
@@ -129,7 +130,7 @@ def test_curves(report):
 def test_report_is_self_contained(report):
     page = (report[0] / "report.html").read_text()
     names = [name for section in FIGURES.values() for name in section]
-    assert page.count("data:image/png;base64,") == len(names) == 18
+    assert page.count("data:image/png;base64,") == len(names) == 19
     assert "http" not in page and 'src="data' in page
     assert page.index("The figures of 2006") < page.index("<table>") < page.index("The figures of 2010")
     for name in names:

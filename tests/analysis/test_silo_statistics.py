@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Surface, thickness, residence, mixing, front, fluctuations and bounds, where the answer is known."""
+"""Surface, thickness, residence, mixing, front, fluctuations and slices of time, where the answer is known."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from spot_analysis.reading.container import Container
-from spot_analysis.report.bounds import Bound
-from spot_analysis.statistics import fluctuations, free_surface, front, mixing, residence, thickness
+from spot_analysis.statistics import fluctuations, free_surface, front, mixing, residence, thickness, through_time
 from spot_analysis.statistics.bonds import find_bonds
 from spot_analysis.statistics.bootstrap import block_sums, bootstrap_error
 from spot_analysis.statistics.history import History
+from spot_analysis.statistics.interval import Interval
+from spot_analysis.statistics.interval_view import IntervalView
 from spot_analysis.statistics.region import Region
 
 from synthetic import make_snapshots, measure, plug
@@ -63,7 +65,7 @@ def test_residence_time_of_a_plug():
     part = measure(residence, falling_plug(times), times, SILO, REGION)
     counts = part.counts.sum(axis=0)
     assert counts[0].sum() == 160 * 10 and counts[1].sum() == 0
-    for share in residence.QUANTILES:
+    for share in residence.QUANTILES.values():
         assert residence.quantile(counts[0], share) == pytest.approx(20.2, abs=2.1)
 
 
@@ -71,6 +73,35 @@ def test_quantiles():
     counts = np.zeros((2, len(residence.EDGES) - 1))
     counts[0, 3] = 10
     assert residence.quantile(counts, 0.5)[0] == pytest.approx(7) and np.isnan(residence.quantile(counts, 0.5)[1])
+
+
+@pytest.mark.parametrize("start, known", [(10, False), (24, True)])
+def test_residence_times_that_the_run_cuts_off_are_unknown(start, known):
+    """Grains that leave from 10 tau on may have stayed for longer than 10 tau, but not those that leave from 24 tau on for 20 tau."""
+    times = np.arange(0, 41, 2.0)
+    run = SimpleNamespace(times=times, measured={"residence": measure(residence, falling_plug(times), times, SILO, REGION)})
+    view = IntervalView(run, np.arange(len(times)), Interval(start, 40.0, "chosen"))
+    found = residence.quantities(view)
+    assert (found["residence_median_10d"].value is not None) is known
+    assert set(found) == {f"residence_{part}_{level}d" for part in ("p16", "median", "p84") for level in (10, 20)}
+
+
+def test_slices_of_time():
+    """Of a run to 61 tau there are two; packing fraction and angle are means over snapshots of a slice, its ends included."""
+    times = np.arange(0, 62, 2.0)
+    x = np.array([1.25, 3.75])
+    slope = np.where(times <= 40, 1.0, 0.0)
+    run = SimpleNamespace(
+        times=times, badness=np.ones(31), region_grains=np.where(times < 41, 4000, 4400), region=lambda: REGION,
+        scene=SimpleNamespace(container=lambda: SILO),
+        measured={"free_surface": SimpleNamespace(x=x, times=times, heights=50 + slope[:, None] * x)})
+    found = through_time.quantities(IntervalView(run, np.arange(31), Interval(0.0, 60.0, "everything")))
+    fraction = math.pi / 6 * 4000 / (12 * 30 * 8)
+    assert list(found) == ["packing_fraction_20_40tau", "surface_angle_20_40tau", "packing_fraction_40_60tau", "surface_angle_40_60tau"]
+    assert found["packing_fraction_20_40tau"].value == pytest.approx(fraction)
+    assert found["packing_fraction_40_60tau"].value == pytest.approx(fraction * (1 + 10 * 1.1) / 11)
+    assert found["surface_angle_20_40tau"].value == pytest.approx(45)
+    assert found["surface_angle_40_60tau"].value == pytest.approx(45 / 11)
 
 
 def test_layers_of_a_plug_stay_unmixed():
@@ -130,17 +161,6 @@ def test_error_of_a_median_covers_the_truth():
         median = residence.quantile(sums.sum(axis=0), 0.5)
         covered += abs(median - 18.32) < 2 * bootstrap_error(sums, lambda some: residence.quantile(some, 0.5))
     assert 0.78 < covered / 200 < 0.97
-
-
-def test_bounds():
-    relative = Bound("relative", 0.02, 2)
-    assert relative.is_met(100, 0.1, 101.9) and not relative.is_met(100, 0.1, 97.9)
-    assert relative.is_met(100, 2, 96.5) and relative.is_met(100, None, 99)
-    assert relative.text() == "max(2 %, 2 SE)" and relative.is_met(None, None, 1) is None
-    target = Bound("target", 0.02, target=1)
-    assert target.is_met(None, None, 1.01) and not target.is_met(1.05, None, 1.05) and target.text() == "1 +- 0.02"
-    assert Bound("below dem").is_met(2, None, 1) and not Bound("below dem").is_met(1, None, 2)
-    assert Bound("below", 0.5).is_met(None, None, 0.5) and Bound("below", 0.5).is_met(None, None, None) is None
 
 
 def test_history():

@@ -121,7 +121,7 @@ def test_scripts_take_snapshots_without_grains(full, tmp_path):
     found = json.loads((tmp_path / "out" / "comparison.json").read_text())["quantities"]
     assert found["surface_angle_last"]["spot"] is None and found["grains_left"]["spot"] == 0
     beside = script("side_by_side.py", full.path, f"empty={source}")
-    assert "arrival_30d" in left_out(beside)
+    assert "empty: arrival_30d, early" in "\n".join(warnings_of(beside))
     for refused, cause in ((script("calibrate.py", source, "--from", 0), "error: "),
                            (script("cell_imprint.py", source, "--from", TIMES[6], "--to", TIMES[-1]), "error: no grains in the bulk")):
         assert refused.returncode == 1 and "Traceback" not in refused.stderr
@@ -282,10 +282,10 @@ def test_snapshots_2_5_tau_apart(full, tmp_path):
     apart = {name for name, reason in reasons.items() if reason == cause}
     assert apart == {"outflow_fano", "profile_variance_10d", "profile_variance_30d", "profile_variance_50d", "profile_variance_slope",
                      *(f"gaussian_variance_{z}0d" for z in range(1, 7)), "variance_slope", "variance_intercept", "correlation_length",
-                     "correlation_amplitude", "particle_diffusion", "speed_wall_over_middle",
+                     "correlation_amplitude", "frame_velocity_rms", "particle_diffusion", "speed_wall_over_middle",
                      *(f"stagnant_boundary_{z}d" for z in (5, 10, 20, 30))}
-    assert set(reasons) - apart <= {"arrival_30d", "arrival_60d", "arrival_90d", "residence_median_20d", "residence_spread_20d",
-                                    "residence_median_10d", "residence_spread_10d", "rdf_first_minimum"}
+    assert set(reasons) - apart <= {"arrival_30d", "arrival_60d", "arrival_90d", "rdf_first_minimum", "packing_axis_less_shoulder",
+                                    *(f"residence_{part}_{z}d" for part in ("p16", "median", "p84") for z in (10, 20))}
     compared = left_out(script("compare.py", full.path, source, "-o", tmp_path / "out"))
     assert {name for name, reason in compared.items() if cause[:34] in reason} >= apart
 

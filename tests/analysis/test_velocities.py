@@ -8,7 +8,8 @@ import pytest
 from spot_analysis.calibration.diffusion import fit_diffusion
 from spot_analysis.calibration.estimate import CalibrationError, estimate
 from spot_analysis.reading.container import Container
-from spot_analysis.statistics import fits, particle_diffusion, profile_width, stagnation, velocity_correlation
+from spot_analysis.statistics import (fits, frame_correlation, particle_diffusion, profile_width, stagnation,
+                                      velocity_correlation)
 from spot_analysis.statistics.bootstrap import block_sums, bootstrap_error
 from spot_analysis.statistics.flow import velocity_profile
 from spot_analysis.statistics.mean_flow import SIZE, UPPER, Step, about_mean_flow, core, inclination_terms, triangles
@@ -91,6 +92,47 @@ def test_only_grains_of_the_core_count():
     assert step.ids.tolist() == [1, 2, 3] and step.inside.tolist() == [True, False, False] and step.fallen == 0.5
     with_margin = CORE.contains(start, margin=1.5)
     assert with_margin.tolist() == [True, False, True, True]
+
+
+def test_linear_flow_of_a_frame_leaves_no_trace():
+    """Sway, strain and rotation of each frame, a hundred times the fluctuations."""
+    rng = np.random.default_rng(7)
+    places = rng.uniform([-8, -2.5, 50], [8, 2.5, 66], (400, 3))
+    own = rng.normal(size=400)
+    carried = own + 100 * (1 + 0.3 * places[:, 0] - 0.2 * places[:, 2])
+    np.testing.assert_allclose(frame_correlation.residuals(places, carried), frame_correlation.residuals(places, own), atol=1e-9)
+    assert abs(frame_correlation.residuals(places, own) @ places[:, [0, 2]]).max() < 1e-7
+
+
+def test_pair_sums_equal_all_pairs():
+    rng = np.random.default_rng(9)
+    places, u = rng.uniform([-8, -2.5, 50], [8, 2.5, 66], (200, 3)), rng.normal(size=200)
+    first, second = np.triu_indices(200, 1)
+    distance = np.linalg.norm(places[first] - places[second], axis=1)
+    pairs, products = frame_correlation.pair_sums(places, u)
+    np.testing.assert_array_equal(pairs, np.histogram(distance, velocity_correlation.EDGES)[0])
+    np.testing.assert_allclose(products, np.histogram(distance, velocity_correlation.EDGES, weights=u[first] * u[second])[0])
+
+
+def test_correlation_about_the_linear_flow_is_recovered():
+    """Of frames whose grains are displaced with covariance alpha exp(-r/beta), in a flow that strains differently in each. Three
+    fitted terms take some 3/400 of the variance and the integral of C(r) over the region away."""
+    rng, beta, alpha = np.random.default_rng(11), 0.8, 0.9
+    packings = []
+    for _ in range(40):
+        points = rng.uniform([-8, -2.5, 50], [8, 2.5, 71], (500, 3))
+        distance = np.linalg.norm(points[:, None] - points, axis=2)
+        covariance = alpha * np.exp(-distance / beta) + (1 - alpha) * np.eye(500)
+        moved = 0.02 * np.linalg.cholesky(covariance) @ rng.normal(size=500)
+        moved += 0.1 * rng.normal() * points[:, 0] / 8 + 0.1 * rng.normal()
+        packings += [points - [[1, 0, 0]] * moved[:, None] / 2, points + [[1, 0, 0]] * moved[:, None] / 2]
+    # each pair of frames is 2 tau apart, and 3 tau from the next
+    times = np.array([5.0 * (k // 2) + 2.0 * (k % 2) for k in range(80)])
+    part = measure(frame_correlation, packings, times, SILO, REGION)
+    assert len(part.start) == 40 and np.all(part.end - part.start == 2)
+    middle = velocity_correlation.middles()
+    np.testing.assert_allclose(frame_correlation.correlation(part, np.arange(40)), alpha * np.exp(-middle / beta), atol=0.05)
+    assert np.sqrt(part.squares.sum() / part.grains.sum()) == pytest.approx(0.01, rel=0.05)  # 0.02 d in 2 tau
 
 
 def walk(rng, grains, steps, b, speed=0.25, streamlines=0.0):

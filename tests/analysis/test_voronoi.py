@@ -2,12 +2,15 @@
 """Voronoi cells whose volume is known, and against scipy's cells one by one."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, Voronoi
 from spot_analysis.reading.container import Container
 from spot_analysis.statistics import voronoi, voronoi_cells
+from spot_analysis.statistics.interval import Interval
+from spot_analysis.statistics.interval_view import IntervalView
 from spot_analysis.statistics.region import Region
 
 from synthetic import fcc, hcp, measure, middle_of, sequential_packing
@@ -78,3 +81,30 @@ def test_map_and_mean_of_a_crystal():
     assert maps[4, 10] == pytest.approx(part.mean[0], rel=0.03)
     few = measure(voronoi, [points[:3]], [0], container, Region(4, 15, 40))
     assert math.isnan(few.mean[0]) and few.map_grains.sum() == 0
+
+
+def mapped(axis, shoulder, top):
+    """A view of six maps of a silo with walls at 25 d: packing fractions on the axis and beyond |x| = 11 d, filled up to ``top``."""
+    x, z = np.linspace(-25, 25, 26), np.arange(0, 72, 2.0)
+    middle = np.abs(x[1:] + x[:-1]) / 2
+    fraction = np.where(middle < 11, axis, shoulder)[:, None] + 0 * z[:-1]
+    grains = np.where(z[1:] <= top, 36, 3) * np.ones((6, 25, 1), dtype=np.int64)
+    times = 40 + 10.0 * np.arange(6)
+    part = SimpleNamespace(x_edges=x, z_edges=z, times=times, map_grains=grains, map_volumes=voronoi.GRAIN * grains / fraction,
+                           mean=np.full(6, axis), spread=np.full(6, 0.05))
+    run = SimpleNamespace(times=times, measured={"voronoi": part})
+    return IntervalView(run, np.arange(6), Interval(40.0, 90.0, "steady"))
+
+
+def test_axis_less_shoulder():
+    assert voronoi.quantities(mapped(0.582, 0.571, 80))["packing_axis_less_shoulder"].value == pytest.approx(0.011)
+    assert voronoi.quantities(mapped(0.582, 0.571, 20))["packing_axis_less_shoulder"].value is None  # too low for any height
+
+
+def test_profiles_are_compared_where_both_are_filled():
+    one, other = mapped(0.582, 0.571, 80), mapped(0.588, 0.5, 40)
+    heights = np.flatnonzero(np.isfinite(voronoi.axis_profile(one)))
+    assert heights.tolist() == list(range(2, 35))  # 4-70 d
+    assert np.isfinite(voronoi.axis_profile(other)).sum() == 18  # 4-40 d
+    assert voronoi.between(one, other)["packing_profile_rms"].value == pytest.approx(0.006)
+    assert voronoi.between(one, mapped(0.6, 0.6, 2))["packing_profile_rms"].value is None

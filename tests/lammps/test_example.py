@@ -76,7 +76,7 @@ def test_threads(snapshots, tmp_path):
 
 
 def test_silo_out_of_sample(tmp_path):
-    """What examples/silo/out-of-sample/run.sh does to the deck: another packing, narrower walls and orifice."""
+    """What analysis/one_material.py does to the deck: another packing, narrower walls and orifice."""
     out = tmp_path / "out"
     dumps = run_example(FRONT_END, out, time=0.035, packing="out-of-sample/packing.data.gz", half_width=16, orifice=6.5, births=193)
     scene = json.loads((out / "scene.json").read_text())

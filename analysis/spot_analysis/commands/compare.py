@@ -6,7 +6,7 @@ import os
 
 from ..base.errors import AnalysisError
 from ..base.progress import Progress
-from ..report import comparison, table
+from ..report import comparison, criteria, families, family_table, table
 from ..report.comparison_json import write_json
 from ..report.figures import draw_pictures
 from ..report.page import write_html
@@ -52,6 +52,10 @@ def compare():
              "spot": IntervalView(spot, spot_common, interval)}
     progress = Progress("report")
     rows = comparison.compare(views["DEM"], views["spot"], progress)
+    progress("judging families")
+    windows = criteria.windows_of(times[-1])
+    verdicts = families.judge([dem], [spot], windows)
+    by_family = family_table.rows({"spot / DEM": verdicts})
 
     print(f"common times: {times[0]:g} to {times[-1]:g} tau, {len(times)} snapshots")
     print(table.describe(views["spot"]))
@@ -59,13 +63,14 @@ def compare():
     print(table.table(rows))
     print()
     print(table.verdict(rows))
+    print(f"\nby family, {family_table.describe(windows)}:\n\n{family_table.markdown(by_family)}")
     command_line.warn_of_left_out({row.name: row.left_out for row in rows if row.left_out})
 
     os.makedirs(options.output, exist_ok=True)
-    write_json(os.path.join(options.output, "comparison.json"), rows, views)
+    write_json(os.path.join(options.output, "comparison.json"), rows, views, verdicts)
     pictures = draw_pictures(options.output, views, progress)
     page = os.path.join(options.output, "report.html")
-    write_html(page, rows, views, pictures)
+    write_html(page, rows, views, pictures, f"<p>{family_table.describe(windows)}</p>\n{family_table.as_html(by_family)}")
     print(f"\nreport: {page}")
 
 

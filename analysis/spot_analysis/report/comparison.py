@@ -4,13 +4,13 @@
 import math
 from dataclasses import dataclass
 
-from ..statistics import (bond_angles, bond_order, counts, fluctuations, free_surface, front, mixing, packing,
-                          particle_diffusion, profile_width, radial_distribution, residence, stagnation, thickness,
+from ..statistics import (bond_angles, bond_order, counts, fluctuations, frame_correlation, free_surface, front, mixing, packing,
+                          particle_diffusion, profile_width, radial_distribution, residence, stagnation, thickness, through_time,
                           velocity_correlation, voronoi)
 from ..statistics.interval_view import whole_run
 from ..statistics.value import Value
 from . import left_out
-from .bounds import BOUNDS
+from .bounds import bound_of
 from .by_name import by_name
 from .papers import PAPERS
 
@@ -18,9 +18,10 @@ from .papers import PAPERS
 # what each of them is, and NEEDS what it needs to be known, of ``left_out.NEEDS``; in both the first pattern counts that fits.
 SECTIONS = {
     "Counts and fluxes": (counts, fluctuations, front),
-    "Velocities": (profile_width, velocity_correlation, particle_diffusion),
+    "Velocities": (profile_width, velocity_correlation, frame_correlation, particle_diffusion),
     "Packing": (packing, radial_distribution, bond_angles, bond_order, voronoi, thickness),
     "Surface, stagnant zone, mixing": (free_surface, stagnation, residence, mixing),
+    "Through time, whatever the interval": (through_time,),
 }
 
 
@@ -98,8 +99,8 @@ def _row(section, concept, name, dem, spot, steady, lacking):
     if dem.value is not None and spot.value is not None:
         difference = spot.value - dem.value
         error = None if dem.error is None or spot.error is None else math.hypot(dem.error, spot.error)
-    bound = BOUNDS.get(name)
-    met = bound.is_met(dem.value, dem.error, spot.value) if bound and (steady or bound.always) else None
+    bound = bound_of(name)
+    met = bound.is_met(dem, spot) if bound and (steady or bound.always) else None
     return Row(name, section, dem.unit, dem.value, dem.error, spot.value, spot.error, difference, error,
                bound and bound.text(), met, PAPERS.get(name),
                left_out.of_runs(lacking, concept, name) if lacking else None, by_name(concept.MEANING, name, ""))

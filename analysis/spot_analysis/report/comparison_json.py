@@ -6,8 +6,11 @@ import json
 from . import curves
 
 
-def write_json(path, rows, views):
-    """``comparison.json``: interval, the two runs, and the quantities by name; null where unknown."""
+def write_json(path, rows, views, verdicts):
+    """``comparison.json``: interval, the two runs, the quantities by name, and those judged by family; null where unknown.
+
+    verdicts : Criterion -> Verdict of ``families``
+    """
     dem = views["DEM"]
     interval = dem.interval
     content = {
@@ -19,6 +22,10 @@ def write_json(path, rows, views):
         "runs": {name.lower(): {"scene": view.run.scene.as_dict(), "provenance": view.run.provenance}
                  for name, view in views.items()},
         "quantities": {row.name: row.as_dict() for row in rows},
+        "families": [{"family": one.family, "name": one.name, "window": one.window, "dem": found.dem.value,
+                      "dem_error": found.dem.error, "spot": found.spot.value, "spot_error": found.spot.error,
+                      "bound": one.bound and one.bound.text(), "met": found.met, "left_out": found.left_out}
+                     for one, found in verdicts.items()],
         "curves": curves.as_lists(views),
     }
     with open(path, "w", encoding="utf-8") as handle:

@@ -11,7 +11,7 @@ from ..statistics.mean_flow import HALF_WIDTH, WALL_LAYER
 from ..statistics.mixing import LAYER
 from ..statistics.stagnation import SHARE
 from ..statistics.velocity_correlation import BOTTOM, TOP
-from . import plots_counts, plots_flow, plots_silo, plots_structure
+from . import plots_counts, plots_flow, plots_history, plots_silo, plots_structure
 
 SECTIONS = {
     "The figures of 2006": {
@@ -35,6 +35,10 @@ SECTIONS = {
         "long_times": (plots_structure.long_times, "g(r) at successive times of each run, where 2006 sees peaks at "
                        "sqrt(3) d and 2 d grow, and the share of crystal-like grains."),
     },
+    "Through the run": {
+        "through_the_run": (plots_history.through_the_run, "Packing fraction, crystal-like grains and g(r) around sqrt(3) d in the "
+                            "structure region, and the angle of the free surface, from the start to the end of the run."),
+    },
     "The figures of 2010": {
         "surface": (plots_structure.surface, "Free surface at the end of the interval, highest grain within 1.25 d of |x|, "
                     "and the angle of the straight line through it."),
@@ -51,7 +55,7 @@ SECTIONS = {
                    f"layers, {LAYER:g} d thick at the start."),
     },
 }
-WIDE = {"velocity_profiles", "drained_grains", "fluxes", "long_times", "radial_distribution", "surface", "across_thickness",
+WIDE = {"through_the_run", "velocity_profiles", "drained_grains", "fluxes", "long_times", "radial_distribution", "surface", "across_thickness",
         "packing_quality", "local_packing", "residence_times", "layers"}
 FIGURES = {name: figure for section in SECTIONS.values() for name, figure in section.items()}
 

@@ -9,8 +9,12 @@ from ..statistics.counts import SLAB
 from ..statistics.interval import STEADY_FROM
 from ..statistics.mean_flow import COVER
 from ..statistics.neighbours import RDF_RANGE
-from ..statistics.snapshot import LAG_TAU
+from ..statistics.snapshot import LAG_TAU, TIME_TOLERANCE
 from .by_name import by_name
+
+
+def _stored(view, concept, name):
+    return "the statistics are of an older format, without it" if concept.NAME in view.run.lacking else None
 
 
 def _grains(view, concept, name):
@@ -72,20 +76,39 @@ def _end(view, concept, name):
     return None if covered else f"no grain is above z = {height} d at the end"
 
 
+def _filled(view, concept, name):
+    return "grains do not fill the cells of the map at any height that counts"
+
+
+def _uncensored(view, concept, name):
+    return f"grains that leave from {view.interval.start:g} tau on may have stayed longer than since the start"
+
+
+def _reach(view, concept, name):
+    end, last = float(re.search(r"_(\d+)tau", name)[1]), view.run.times[view.common[-1]]
+    return f"the run ends at {last:g} tau" if last < end - TIME_TOLERANCE else None
+
+
 # By the names that the statistics have for them in NEEDS. What a need says comes before what the ones behind it say.
-NEEDS = {"grains": _grains, "pairs": _pairs, "height": _height, "outflow": _outflow, "structure": _structure, "core": _core,
-         "cells": _cells, "start": _start, "steady": _steady, "end": _end}
+NEEDS = {"stored": _stored, "grains": _grains, "pairs": _pairs, "height": _height, "outflow": _outflow, "structure": _structure, "core": _core,
+         "cells": _cells, "filled": _filled, "start": _start, "steady": _steady, "end": _end,
+         "uncensored": _uncensored, "reach": _reach}
+
+
+UNTOLD = "the interval does not tell it"
 
 
 def why(view, concept, name):
     """Why the quantity ``name`` of the module ``concept`` is unknown in ``view``, an IntervalView."""
     reasons = (NEEDS[need](view, concept, name) for need in by_name(concept.NEEDS, name, ()))
-    return next((reason for reason in reasons if reason), "the interval does not tell it")
+    return next((reason for reason in reasons if reason), UNTOLD)
 
 
 def of_runs(views, concept, name):
     """The same of several runs, name of the run -> view."""
     reasons = {run: why(view, concept, name) for run, view in views.items()}
+    if set(reasons.values()) != {UNTOLD}:  # of a number that needs both, the run that has what it needs is not the cause
+        reasons = {run: reason for run, reason in reasons.items() if reason != UNTOLD}
     if len(set(reasons.values())) == 1 and len(reasons) > 1:
         return next(iter(reasons.values()))
     return "; ".join(f"{run}: {reason}" for run, reason in reasons.items())

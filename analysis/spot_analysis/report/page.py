@@ -8,14 +8,17 @@ from .figures import FIGURES, SECTIONS, WIDE
 from .table import HEAD, cells, describe, verdict
 
 
-def write_html(path, rows, views, pictures):
-    """One page with the pictures inside: the figures of 2006 first, then the table, then the others."""
+def write_html(path, rows, views, pictures, families):
+    """One page with the pictures inside: the figures of 2006 first, then the tables, then the others.
+
+    families : the table by family as HTML
+    """
     runs = "".join(f"<li><b>{name}</b>: {html.escape(_describe_run(view.run))}</li>" for name, view in views.items())
     first, *others = (_figures(title, names, pictures) for title, names in SECTIONS.items())
     interval = html.escape(describe(views["spot"])).replace("\n", "<br>\n")
     with open(path, "w", encoding="utf-8") as handle:
         handle.write(PAGE.format(runs=runs, interval=interval, verdict=html.escape(verdict(rows)), first=first,
-                                 table=_html_table(rows), others="".join(others)))
+                                 table=_html_table(rows), families=families, others="".join(others)))
 
 
 def _figures(title, names, pictures):
@@ -59,7 +62,8 @@ table {{ border-collapse: collapse; font-size: 0.8em; }}
 th, td {{ text-align: left; padding: 0.2em 0.6em; border-bottom: 1px solid #ddd; vertical-align: top; }}
 th.section {{ padding-top: 1.2em; }}
 td:nth-child(n+3):nth-child(-n+5) {{ font-variant-numeric: tabular-nums; white-space: nowrap; }}
-tr.met td:nth-child(8) {{ color: #2a7d2a; }} tr.missed td:nth-child(8) {{ color: #b3202c; font-weight: bold; }}
+tr.met td:nth-child(8) {{ color: #2a7d2a; }} tr.missed td:nth-child(8),
+table.families tr.missed td:last-child {{ color: #b3202c; font-weight: bold; }}
 .figures {{ display: flex; flex-wrap: wrap; gap: 1.5em 2%; align-items: flex-end; }}
 figure {{ margin: 0; }} figure.wide {{ width: 64%; }} figure.half {{ width: 32%; }}
 img {{ max-width: 100%; }} figcaption {{ color: #555; font-size: 0.85em; }}
@@ -72,8 +76,11 @@ img {{ max-width: 100%; }} figcaption {{ color: #555; font-size: 0.85em; }}
 {first}<h2>Numbers</h2>
 <p>Lengths in grain diameters d, times in tau = sqrt(d/g). Standard errors: bootstrap over blocks of at
 least 6 tau; none where the interval holds fewer than four. Papers: DEM, or DEM / spot model, as printed there, from other
-packings. Bounds: on spot against DEM; SE is the standard error of DEM.</p>
+packings. Bounds: on spot against DEM; SE is the standard error of their difference.</p>
 <table>
 {table}</table>
+<h2>By family</h2>
+<p>Bounds on quantities that depend on each other, together: families are what is independent.</p>
+{families}
 {others}</body></html>
 """

@@ -26,7 +26,7 @@ class Interval:
         return self.start, self.end
 
     def is_steady(self):
-        return self.start >= STEADY_FROM - TIME_TOLERANCE
+        return self.kind == "steady" or self.start >= STEADY_FROM - TIME_TOLERANCE
 
     def holds(self, times):
         return (times >= self.start - TIME_TOLERANCE) & (times <= self.end + TIME_TOLERANCE)

@@ -20,12 +20,13 @@ from .snapshot import LAG_TAU, TIME_TOLERANCE, Snapshot
 PROFILE_HEIGHTS = np.array([5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0, 70.0])
 
 
-def measure_dumps(source, scene, label="dumps", provenance=None, warn=print, concepts=CONCEPTS):
+def measure_dumps(source, scene, label="dumps", provenance=None, warn=print, concepts=CONCEPTS, times=None):
     """Measure the dumps ``source`` (see ``dump.find_dumps``).
 
     label : for the progress lines
     warn : called with a line for frames that are left out, and for a scene that does not seem to be that of the dumps
     concepts : those of CONCEPTS to measure
+    times : (n,) tau, of the snapshots to measure; None: all
 
     Snapshots before the opening of the orifice are left out. Raises DumpError, SceneError.
     """
@@ -37,12 +38,15 @@ def measure_dumps(source, scene, label="dumps", provenance=None, warn=print, con
         if scene.time(frame.timestep) < -TIME_TOLERANCE:
             early += 1
             continue
+        if times is not None and np.abs(times - scene.time(frame.timestep)).min() > TIME_TOLERANCE:
+            continue
         recorder.add(frame)
         total = f" of {files}" if files > 1 else ""
         progress(f"{number} snapshots{total}, t = {recorder.times[-1]:g} tau")
     if not recorder.times:
-        raise DumpError(f"{source}: all {early} snapshots are from before the orifice opens, at {scene.opening_time:g} "
-                        "(opening_time)")
+        cause = (f"all {early} snapshots are from before the orifice opens, at {scene.opening_time:g} (opening_time)"
+                 if early == number else "no snapshot is at one of the times that are asked for")
+        raise DumpError(f"{source}: {cause}")
     if early:
         warn(f"{source}: {early} snapshots from before the orifice opens, at {scene.opening_time:g} (opening_time), are left out")
     if abs(recorder.times[0]) > TIME_TOLERANCE:

@@ -3,15 +3,17 @@
 
 import numpy as np
 
+from .value import Value
+
 NAME = "residence"
 LEVELS = np.array([10.0, 20.0])  # d
 EDGES = np.linspace(0, 120, 61)  # tau
-QUANTILES = (0.16, 0.5, 0.84)
+QUANTILES = {"p16": 0.16, "median": 0.5, "p84": 0.84}
 MEANING = {
     "residence_median_*": "time from that level to the orifice",
-    "residence_spread_*": "half of its 16 % to 84 % range",
+    "residence_*": "the same, 16 % or 84 % of the grains are faster",
 }
-NEEDS = {"*": ("outflow", "height")}
+NEEDS = {"*": ("outflow", "height", "uncensored")}
 
 
 class Measurement:
@@ -80,15 +82,14 @@ def distribution(view, index):
 
 
 def quantities(view):
+    """Quantiles that the length of the run does not cut off: a grain that leaves at time t cannot have stayed longer than t, so
+    they are known up to the time at which the interval begins."""
     part = view.run.measured[NAME]
-    named, ends = {}, (part.start, part.end)
+    named = {}
     for index, level in enumerate(LEVELS):
-        counts = part.counts[:, index]
-
-        def spread(sums):
-            return (quantile(sums, QUANTILES[2]) - quantile(sums, QUANTILES[0])) / 2
-
-        named[f"residence_median_{level:g}d"] = view.estimate_pairs("tau", *ends, counts,
-                                                                    lambda sums: quantile(sums, QUANTILES[1]))
-        named[f"residence_spread_{level:g}d"] = view.estimate_pairs("tau", *ends, counts, spread)
+        for name, share in QUANTILES.items():
+            value = view.estimate_pairs("tau", part.start, part.end, part.counts[:, index],
+                                        lambda sums, share=share: quantile(sums, share))
+            known = value.value is not None and value.value <= min(view.interval.start, EDGES[-2])
+            named[f"residence_{name}_{level:g}d"] = value if known else Value("tau")
     return named

@@ -14,14 +14,16 @@ import numpy as np
 
 from ..base.errors import AnalysisError, SceneError
 from ..reading.scene import Scene, scene_of
-from . import (bond_angles, bond_order, free_surface, mixing, particle_diffusion, residence, thickness, velocity_correlation,
-               voronoi)
+from . import (bond_angles, bond_order, frame_correlation, free_surface, mixing, particle_diffusion, residence, thickness,
+               velocity_correlation, voronoi)
 from .region import structure_region
 
-FORMAT = "spot-analysis run statistics 3"
+FORMAT = "spot-analysis run statistics 4"
+# Files whose dumps are gone stay readable: format -> NAME of the concepts that came later, which such a file lacks.
+OLDER = {"spot-analysis run statistics 3": (frame_correlation.NAME,)}
 # Each has a NAME and a class Measurement: add(snapshot, history) for each snapshot in turn, then arrays(), which go to
 # RunStatistics.measured[NAME].
-CONCEPTS = (velocity_correlation, particle_diffusion, bond_angles, bond_order, free_surface, thickness, voronoi,
+CONCEPTS = (velocity_correlation, frame_correlation, particle_diffusion, bond_angles, bond_order, free_surface, thickness, voronoi,
             residence, mixing)
 PICTURE_QUANTUM = 0.01  # d
 
@@ -48,6 +50,7 @@ class RunStatistics:
     picture_x, picture_z : positions of the front layer's grains in PICTURE_QUANTUM, one picture after the other
     picture_layer : layer of ``front_layer.LAYER_HEIGHT`` in which each of them started, -1 for those that came later
     measured : the arrays of each of CONCEPTS under its NAME; its class Measurement says which
+    lacking : NAME of those that a file of an older format does not have; their arrays are empty
     """
 
     scene: Scene
@@ -77,6 +80,7 @@ class RunStatistics:
     picture_z: np.ndarray
     picture_layer: np.ndarray
     measured: dict
+    lacking: tuple = ()
 
     def region(self):
         return structure_region(self.scene.container())
@@ -94,7 +98,7 @@ class RunStatistics:
                 self.picture_layer[part])
 
     def save(self, path):
-        header = {"format": FORMAT, "scene": self.scene.as_dict(), "provenance": self.provenance}
+        header = {"format": FORMAT, "scene": self.scene.as_dict(), "provenance": self.provenance, "lacking": self.lacking}
         arrays = {name: _compact(getattr(self, name)) for name in ARRAYS}
         arrays.update({f"{concept}.{name}": _compact(array) for concept, part in self.measured.items()
                        for name, array in vars(part).items()})
@@ -110,7 +114,7 @@ def load(path):
     try:
         with np.load(path, allow_pickle=False) as stored:
             header = json.loads(str(stored["header"]))
-            if header["format"] != FORMAT:
+            if header["format"] not in (FORMAT, *OLDER):
                 raise AnalysisError(f"{path}: statistics of another format ('{header['format']}'); "
                                     "measure the dumps again")
             arrays = {name: _roomy(stored[name]) for name in ARRAYS}
@@ -120,13 +124,18 @@ def load(path):
                     concept, name = key.split(".")
                     setattr(measured[concept], name, _roomy(stored[key]))
             scene = scene_of(header["scene"])
+            lacking = tuple(header.get("lacking", OLDER.get(header["format"], ())))
     except SceneError as error:
         raise AnalysisError(f"{path}: {error}") from error
     except OSError as error:
         raise AnalysisError(f"{path}: {error.strerror or error}") from error
     except (EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile, zlib.error) as error:
         raise AnalysisError(f"{path}: not a statistics file of measure.py, or a damaged one ({error})") from error
-    return RunStatistics(scene, header["provenance"], measured=measured, **arrays)
+    for concept in CONCEPTS:
+        if concept.NAME in lacking:
+            nothing = concept.Measurement(scene.container(), structure_region(scene.container()))
+            measured[concept.NAME] = SimpleNamespace(**nothing.arrays())
+    return RunStatistics(scene, header["provenance"], measured=measured, lacking=lacking, **arrays)
 
 
 def _compact(array):
