@@ -74,6 +74,7 @@ class PlainWindows {
         packing_(1.0, 100.0, outlet, grains, *silo_),
         critical_(spots, 1.0),
         flow_(spots, *silo_, 1.0),
+        surface_(spots, *silo_, 1.0),
         next_birth_(walk_.time_of_birth(0, 0.0)) {}
 
   void advance_by_a_window() {
@@ -92,9 +93,12 @@ class PlainWindows {
       live_.push_back({walk_.birth(born_, next_birth_, *silo_), false});
       set_speed(live_.back().spot, next_birth_);
     }
+    surface_.clear();
+    for (const Grain& grain : packing_.grains()) surface_.add(grain.position);
+    surface_.gather(alone);
     for (Live& live : live_) {
       while (live.spot.next_step <= until && !live.out)
-        moves_of_window_.emplace_back(walk_.step(live.spot, *silo_, flow_), &live);
+        moves_of_window_.emplace_back(walk_.step(live.spot, {*silo_, flow_, surface_}), &live);
     }
     // All are weighed before the first is carried out.
     for (auto& [move, live] : moves_of_window_) {
@@ -104,8 +108,7 @@ class PlainWindows {
       move.weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet, shares) * live->spot.volume;
       flow_.add(move, live->spot.volume);
       if (critical_.on())
-        live->spot.volume =
-            critical_.volume_after(live->spot.volume, move, shares, flow_.shear(move.middle), *silo_);
+        live->spot.volume = critical_.volume_after(live->spot.volume, move, shares, flow_.shear(move.middle), *silo_);
       if (shares == 0 && move.middle.z() > spots_.radius) live->out = true;
     }
     for (const auto& [move, live] : moves_of_window_) packing_.displace(move, spots_);
@@ -133,6 +136,7 @@ class PlainWindows {
   scenes::PlainPacking packing_;
   spot::CriticalState critical_;
   spot::FlowField flow_;
+  spot::FreeSurface surface_;
   std::vector<Live> live_;
   std::vector<std::pair<Move, Live*>> moves_of_window_;
   double next_birth_;
@@ -146,7 +150,7 @@ struct Spots {
   bool together;
   bool parabolic = false;
   double dilation = 0.0;
-  double critical_fraction = 0.0, dilatancy = 0.0, shear_length = 0.0;
+  double critical_fraction = 0.0, dilatancy = 0.0, shear_length = 0.0, surface_exponent = 0.0;
 };
 
 class WindowedDrainageBruteForce : public testing::TestWithParam<Spots> {};
@@ -162,6 +166,7 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   spots.exchange_length = 1.0;
   spots.dilatancy = GetParam().dilatancy;
   spots.shear_length = GetParam().shear_length;
+  spots.surface_exponent = GetParam().surface_exponent;
   if (GetParam().parabolic) spots.profile = spot::InfluenceProfile::parabolic;
   RelaxationParameters never;
   never.tolerance = 1e6;
@@ -192,7 +197,8 @@ INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
                                          Spots{"CriticalState", 77.0, false, true, 0.0, 0.6},
                                          Spots{"Dilatancy", 77.0, false, true, 0.03, 0.6, 0.1},
                                          Spots{"Shear", 0.0, false, false, 0.0, 0.0, 0.0, 2.0},
-                                         Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 2.0}),
+                                         Spots{"Surface", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 3.0},
+                                         Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 2.0, 3.0}),
                          [](const auto& spots) { return spots.param.name; });
 
 TEST(WindowedDrainageInvariance, ARerunIsIdentical) {

@@ -72,7 +72,7 @@ void TimeOrderedDrainage::advance_to(double time) {
   const bool global =
       relaxation_parameters().schedule == RelaxationSchedule::global && relaxation_parameters().every > 0;
   const double interval = relaxation_parameters().every * spot_parameters().mean_waiting_time();
-  while (const auto move = spots_.next_step(time, container())) {
+  while (const auto move = spots_.next_step(time, container(), visit_positions())) {
     while (global && static_cast<double>(relaxed_everywhere_ + 1) * interval <= move->time) relax_everywhere();
     carry_out(*move);
   }
@@ -101,8 +101,7 @@ void TimeOrderedDrainage::weigh(Move& move) {
   const int enclosed = enclosed_volume(packing_, near_, move, spot_parameters());
   const Spots::Carried carried = spots_.carry(move, enclosed, container());
   count_volume_left(carried.left);
-  move.weight =
-      fixed_volume_weight(spot_parameters(), move.middle.z() - limits().outlet, enclosed) * carried.volume;
+  move.weight = fixed_volume_weight(spot_parameters(), move.middle.z() - limits().outlet, enclosed) * carried.volume;
 }
 
 bool TimeOrderedDrainage::relaxes_around(const Move& move) const {

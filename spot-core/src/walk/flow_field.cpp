@@ -73,8 +73,7 @@ void FlowField::find_volumes() {
 /// At a node, or `otherwise` in walls, across which nothing is sheared.
 double FlowField::flow(const NodeLattice::Node& unwrapped, double otherwise) const {
   const NodeLattice::Node node = lattice_.wrapped(unwrapped);
-  if (!box_.contains(node))
-    return lattice_.volume(node) > least_part_inside * lattice_.cell_volume() ? 0.0 : otherwise;
+  if (!box_.contains(node)) return lattice_.volume(node) > least_part_inside * lattice_.cell_volume() ? 0.0 : otherwise;
   const std::size_t k = box_.place(node);
   return volumes_[k] > 0.0 ? carried_[k] / volumes_[k] : otherwise;
 }
@@ -139,8 +138,6 @@ void FlowField::restore(ByteReader& saved) {
   find_shear();
 }
 
-std::size_t FlowField::memory() const {
-  return bytes_in(added_, carried_, volumes_, shear_) + lattice_.memory();
-}
+std::size_t FlowField::memory() const { return bytes_in(added_, carried_, volumes_, shear_) + lattice_.memory(); }
 
 }  // namespace spot

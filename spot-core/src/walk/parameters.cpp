@@ -45,6 +45,9 @@ void SpotParameters::validate() const {
   validate_critical_state();
   if (!(shear_length >= 0.0) || !std::isfinite(shear_length))
     throw InvalidParameter(message("shear length of spots is ", shear_length, " but must be zero (off) or positive"));
+  if (!(surface_exponent >= 0.0 && surface_exponent <= calibration::largest_surface_exponent))
+    throw InvalidParameter(message("surface exponent is ", surface_exponent, " but must be from 0 (off) to ",
+                                   calibration::largest_surface_exponent));
   if (dilation > 0.0 && together)
     throw InvalidParameter(message("spot dilation is ", dilation, " but must be 0 for spots that step together"));
   require_positive("spot step width", step_width);

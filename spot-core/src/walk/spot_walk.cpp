@@ -2,6 +2,7 @@
 #include "spot/walk/spot_walk.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include "spot/base/errors.hpp"
 #include "spot/base/random.hpp"
@@ -15,15 +16,21 @@ std::array<double, 4> numbers_of_birth(const SpotParameters& p, std::int64_t id)
   return uniform(p.seed, RandomPurpose::birth, static_cast<std::uint64_t>(id), 0);
 }
 
-/// Numbers of the step to come: waiting time before it, its direction, a lot for others, and whether it changes direction at all.
+/// Numbers of the step to come: waiting time before it, its direction, a lot for others, and whether it changes
+/// direction at all.
 std::array<double, 4> numbers_of_step(const SpotParameters& p, const Spot& spot) {
   return uniform(p.seed, RandomPurpose::step, static_cast<std::uint64_t>(spot.id),
                  static_cast<std::uint64_t>(spot.steps));
 }
 
+constexpr int directions = 4;
+
+/// A uniform number that gives one of them.
+double number_of_direction(int direction) { return (direction + 0.5) / directions; }
+
 /// One of the four vectors (+-dx, 0, dz), (0, +-dx, dz) (2006; trap: 2010 prints diagonals that spread twice as fast).
 Vector3 step_vector(const SpotParameters& p, double uniform) {
-  switch (static_cast<int>(4.0 * uniform)) {
+  switch (static_cast<int>(directions * uniform)) {
     case 0:
       return {p.step_width, 0.0, p.step_height};
     case 1:
@@ -93,13 +100,26 @@ bool SpotWalk::goes_sideways(const Spot& spot, const Vector3& middle, const Flow
   return number * (1.0 + parameters_.shear_length * flow.shear(middle)) < 1.0;
 }
 
-Move SpotWalk::step(Spot& spot, const Container& container, const FlowField& flow) const {
+/// Chooses the direction once more, with the same number, by how much of the spot each would keep below the surface.
+void SpotWalk::steer_by_surface(Spot& spot, const Surroundings& around) const {
+  std::vector<Vector3> middles;
+  for (int k = 0; k < directions; ++k) {
+    const Vector3 target = spot.position + step_vector(parameters_, number_of_direction(k));
+    middles.push_back(0.5 * (spot.position + around.container.keep_spot_inside(spot.position, target)));
+  }
+  spot.direction = number_of_direction(static_cast<int>(around.surface.choose(middles, spot.direction)));
+}
+
+Move SpotWalk::step(Spot& spot, const Surroundings& around) const {
+  const Container& container = around.container;
   Move move;
   move.time = spot.next_step;
   move.spot = spot.id;
   const Vector3 start = spot.position;
+  if (around.surface.steers() && around.surface.is_near(start)) steer_by_surface(spot, around);
   Vector3 target = start + step_vector(parameters_, spot.direction);
-  if (!goes_sideways(spot, 0.5 * (start + target), flow)) target = start + Vector3(0.0, 0.0, parameters_.step_height);
+  if (!goes_sideways(spot, 0.5 * (start + target), around.flow))
+    target = start + Vector3(0.0, 0.0, parameters_.step_height);
   spot.position = container.keep_spot_inside(start, target);
   // A spot that a wall has reflected goes on away from it, if it goes on its way.
   if (spot.position != target) spot.direction = opposite(spot.direction);

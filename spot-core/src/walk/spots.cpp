@@ -18,8 +18,10 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       critical_(parameters, diameter),
       shears_(parameters.shears()),
       flow_(parameters, container, diameter),
-      setting_interval_(
-          dilates_ || shears_ ? calibration::climb_between_settings * parameters.radius / parameters.speed : 0.0) {}
+      surface_(parameters, container, diameter),
+      setting_interval_(dilates_ || shears_ || surface_.steers()
+                            ? calibration::climb_between_settings * parameters.radius / parameters.speed
+                            : 0.0) {}
 
 /// Returns whether the newborn spot was kept.
 bool Spots::bear_next(const Container& container, const Belongs& here) {
@@ -54,7 +56,7 @@ void Spots::step_until(double until, const Container& container,
   for (Place& place : places_) {
     if (place.removed) continue;
     moves.clear();
-    while (place.spot.next_step <= until) moves.push_back(walk_.step(place.spot, container, flow_));
+    while (place.spot.next_step <= until) moves.push_back(walk_.step(place.spot, {container, flow_, surface_}));
     if (!moves.empty()) visit(place.spot, moves);
   }
   queued_ = false;
@@ -86,7 +88,7 @@ double Spots::next_setting() const {
                                  : std::numeric_limits<double>::infinity();
 }
 
-std::optional<Move> Spots::next_step(double time, const Container& container) {
+std::optional<Move> Spots::next_step(double time, const Container& container, const VisitGrains& visit_grains) {
   while (true) {
     if (!queued_) queue_all();
     drop_removed_events();
@@ -95,6 +97,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container) {
       Alone alone;
       set_relative_speeds(next_setting(), alone);
       if (settings_ > 0) update_flow(setting_interval_, alone);
+      update_surface(visit_grains, alone);
       ++settings_;
     } else if (event <= time && event == next_birth_) {
       bear_next(container, [](const Spot&) { return true; });
@@ -107,7 +110,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container) {
   std::pop_heap(events_.begin(), events_.end());
   const std::size_t place = events_.back().place;
   events_.pop_back();
-  const Move move = walk_.step(places_[place].spot, container, flow_);
+  const Move move = walk_.step(places_[place].spot, {container, flow_, surface_});
   queue(place);
   return move;
 }
@@ -136,9 +139,17 @@ void Spots::update_flow(double elapsed, Communicator& communicator) {
   if (shears_) flow_.update(elapsed, communicator);
 }
 
+void Spots::update_surface(const VisitGrains& visit_grains, Communicator& communicator) {
+  if (!surface_.steers()) return;
+  surface_.clear();
+  visit_grains([this](const Vector3& position) { surface_.add(position); });
+  surface_.gather(communicator);
+}
+
 void Spots::replace_container(const Container& container) {
   dilation_.replace_container(container);
   flow_.replace_container(container);
+  surface_.replace_container(container);
 }
 
 void Spots::remove(std::int64_t spot) {
@@ -187,6 +198,7 @@ void Spots::save(Bytes& bytes) const {
   append(bytes, settings_);
   dilation_.save(bytes);
   flow_.save(bytes);
+  surface_.save(bytes);
 }
 
 void Spots::restore(ByteReader& saved) {
@@ -196,8 +208,11 @@ void Spots::restore(ByteReader& saved) {
   settings_ = saved.take<std::int64_t>();
   dilation_.restore(saved);
   flow_.restore(saved);
+  surface_.restore(saved);
 }
 
-std::size_t Spots::memory() const { return bytes_in(places_, events_) + dilation_.memory() + flow_.memory(); }
+std::size_t Spots::memory() const {
+  return bytes_in(places_, events_) + dilation_.memory() + flow_.memory() + surface_.memory();
+}
 
 }  // namespace spot

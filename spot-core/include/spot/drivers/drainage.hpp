@@ -15,7 +15,7 @@
 #include "spot/packing/displacement.hpp"
 #include "spot/packing/packing.hpp"
 #include "spot/walk/parameters.hpp"
-#include "spot/walk/spot_walk.hpp"
+#include "spot/walk/spots.hpp"
 
 namespace spot {
 
@@ -104,6 +104,9 @@ class Drainage {
   const GrainChecks& checks() const { return checks_; }
   const Container& container() const { return *container_; }
   double diameter() const { return diameter_; }
+  Spots::VisitGrains visit_positions() const {
+    return [this](const auto& visit) { visit_grains([&visit](const Grain& grain) { visit(grain.position); }); };
+  }
   MovesReceived* received() { return received_ ? &*received_ : nullptr; }
 
   /// `enclosed`: grain volume (1024 = grain_volume).

@@ -21,13 +21,16 @@ constexpr double slowest_relative_speed = 0.125, fastest_relative_speed = 4.0;
 /// far less than the spacing of the lattice on which spots are counted. Windows set them once each.
 constexpr double climb_between_settings = 0.1;
 
-/// While a spot at v_s climbs so many R_s, what FlowField remembers of earlier steps falls by a factor of e: 14 tau with
-/// the fitted parameters. A choice: long enough for hundreds of steps at each node, short beside the time in which the
-/// flow of a silo changes its shape.
+/// While a spot at v_s climbs so many R_s, what FlowField remembers of earlier steps falls by a factor of e: 14 tau
+/// with the fitted parameters. A choice: long enough for hundreds of steps at each node, short beside the time in which
+/// the flow of a silo changes its shape.
 constexpr double climb_of_flow_memory = 10.0;
 
-/// Bounds of the critical packing fraction of grains: random loose packings begin at 0.55 with friction, random close ones end
-/// at 0.64; a little more on either side for grains of unequal size.
+/// Of 2010's rule for the free surface. It has 3; with more than ten times that, spots only climb the steepest way.
+constexpr double largest_surface_exponent = 32.0;
+
+/// Bounds of the critical packing fraction of grains: random loose packings begin at 0.55 with friction, random close
+/// ones end at 0.64; a little more on either side for grains of unequal size.
 constexpr double least_critical_fraction = 0.5, largest_critical_fraction = 0.7;
 
 /// The least exchange length in steps: with shorter ones a step leaves more than there is too little.

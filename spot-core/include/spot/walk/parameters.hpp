@@ -12,11 +12,11 @@ namespace spot {
 /// "2006" is Rycroft, Bazant, Grest, Landry, Phys. Rev. E 73, 051306; "2010" is Rycroft, Wong, Bazant,
 /// Powder Technology 200, 1-11. Lengths and times in the units of the deck.
 struct SpotParameters {
-  double radius = 0.0;          ///< R_s: grains with centres this close to the middle of a step move with it (length)
-  double influence = 0.0;       ///< w: a step dr of the spot moves them by -w dr (2006, eq. 1)
-  double step_width = 0.0;      ///< dx: a step goes by +-dx along x or along y (length)
-  double step_height = 0.0;     ///< dz: and by dz upwards (length)
-  double speed = 0.0;           ///< v_s: mean drift speed of a spot (length / time)
+  double radius = 0.0;       ///< R_s: grains with centres this close to the middle of a step move with it (length)
+  double influence = 0.0;    ///< w: a step dr of the spot moves them by -w dr (2006, eq. 1)
+  double step_width = 0.0;   ///< dx: a step goes by +-dx along x or along y (length)
+  double step_height = 0.0;  ///< dz: and by dz upwards (length)
+  double speed = 0.0;        ///< v_s: mean drift speed of a spot (length / time)
   Injection injection_rate = 0.0;  ///< nu_s: births per time at each outlet (1 / time)
   /// N: a spot always carries the free volume of w N grains of the reference diameter, whatever volume it encloses, of
   /// which each grain's counts by its share of the influence (2010's fixed-volume weighting). In grain volumes.
@@ -31,12 +31,16 @@ struct SpotParameters {
   /// phi_c: the packing fraction of what flows, away from walls and where nothing is sheared (CriticalState). 0: spots
   /// carry the same volume all the way (2006).
   double critical_fraction = 0.0;
-  /// Of climb, in which a spot leaves a share of its volume as large as that by which the packing is too dense (length).
+  /// Of climb, in which a spot leaves a share of its volume as large as that by which the packing is too dense
+  /// (length).
   double exchange_length = 0.0;
   /// a: shear s for each length that grains fall (FlowField) lowers phi_c by a s, of itself (length).
   double dilatancy = 0.0;
   /// L: it narrows the walk, to b_s / (1 + L s) (length). 0: the walk does not depend on the flow (2006).
   double shear_length = 0.0;
+  /// beta: near the free surface, how much rather spots go where it is higher (2010's rule, FreeSurface). 0: they do
+  /// not care (2006).
+  double surface_exponent = 0.0;
   bool together = false;  ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
   std::uint64_t seed = 1;
 

@@ -5,6 +5,7 @@
 
 #include "spot/geometry/container.hpp"
 #include "spot/walk/flow_field.hpp"
+#include "spot/walk/free_surface.hpp"
 #include "spot/walk/move.hpp"
 #include "spot/walk/parameters.hpp"
 
@@ -22,8 +23,15 @@ struct Spot {
   double volume = 1.0;          ///< that it carries, over that of a newborn one (CriticalState)
 };
 
-/// How spots are born and walk. Walks do not look at grains, and there is no state but the spot: all draws follow from
-/// (seed, spot id, step number).
+/// What a step depends on, beside its spot.
+struct Surroundings {
+  const Container& container;
+  const FlowField& flow;
+  const FreeSurface& surface;
+};
+
+/// How spots are born and walk. There is no state but the spot: all draws follow from (seed, spot id, step number). Of
+/// grains, walks know the free surface at most.
 ///
 /// A spot is born uniformly on what is R_s inside the rim of an outlet, and R_s below it: it
 /// enters the packing with its whole influence, so that as much leaves through the outlet as the spot
@@ -45,11 +53,12 @@ class SpotWalk {
 
   /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
   /// cell then; the middle of the step need not be.
-  Move step(Spot& spot, const Container& container, const FlowField& flow) const;
+  Move step(Spot& spot, const Surroundings& around) const;
 
  private:
   void draw_next_step(Spot& spot) const;
   bool goes_sideways(const Spot& spot, const Vector3& middle, const FlowField& flow) const;
+  void steer_by_surface(Spot& spot, const Surroundings& around) const;
 
   SpotParameters parameters_;
 };

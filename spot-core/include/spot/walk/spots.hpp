@@ -11,6 +11,7 @@
 #include "spot/walk/critical_state.hpp"
 #include "spot/walk/dilation_field.hpp"
 #include "spot/walk/flow_field.hpp"
+#include "spot/walk/free_surface.hpp"
 #include "spot/walk/spot_walk.hpp"
 
 namespace spot {
@@ -25,9 +26,14 @@ class Spots {
   /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
   Spots(const SpotParameters& parameters, const Container& container, double diameter);
 
+  /// Calls its argument for the position of every grain of this rank.
+  using VisitGrains = std::function<void(const std::function<void(const Vector3&)>&)>;
+
   /// In the order of (time, spot): the next step of any spot up to and including `time`, or none. The spot has been
-  /// moved. Relative speeds are set whenever a spot has climbed a tenth of its radius at v_s.
-  std::optional<Move> next_step(double time, const Container& container);
+  /// moved. Relative speeds are set, and flow and surface brought up to date, whenever a spot has climbed a tenth of
+  /// its radius at v_s. `visit_grains`: by default there are none.
+  std::optional<Move> next_step(
+      double time, const Container& container, const VisitGrains& visit_grains = [](const auto&) {});
 
   /// Collective. From `now` on all spots climb as fast as the dilation there lets them.
   void set_relative_speeds(double now, Communicator& communicator);
@@ -47,12 +53,15 @@ class Spots {
     double volume = 1.0;    ///< in the move, over that of a newborn spot
     std::int64_t left = 0;  ///< in the packing, less what was taken up there, in CriticalState::volume_parts-ths
   };
-  /// What the spot of a move carries in it; from then on it carries what it has not left there (CriticalState). For each
-  /// move once, in the order of a spot's moves. `enclosed`: grain volume (1024 = grain_volume).
+  /// What the spot of a move carries in it; from then on it carries what it has not left there (CriticalState). For
+  /// each move once, in the order of a spot's moves. `enclosed`: grain volume (1024 = grain_volume).
   Carried carry(const Move& move, int enclosed, const Container& container);
 
   /// Collective. `elapsed` after the last time, spots learn how the flow is sheared now.
   void update_flow(double elapsed, Communicator& communicator);
+
+  /// Collective. Spots learn where the free surface is now, if they have to know.
+  void update_surface(const VisitGrains& visit_grains, Communicator& communicator);
 
   /// There is nothing left above the spot. One that is gone already may be named again.
   void remove(std::int64_t spot);
@@ -105,6 +114,7 @@ class Spots {
   CriticalState critical_;
   bool shears_;
   FlowField flow_;
+  FreeSurface surface_;
 
   // Of spots that step in the order of time.
   std::vector<Event> events_;  // a heap of next steps; those of removed spots are dropped when they come up

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "spot/base/bytes.hpp"
+#include "spot/geometry/container.hpp"
+#include "spot/parallel/communicator.hpp"
+#include "spot/walk/influence_profile.hpp"
+#include "spot/walk/parameters.hpp"
+
+namespace spot {
+
+/// The height of the packing's free surface from place to place, and which way a spot below it goes.
+///
+/// 2010, section 3.3: of its candidate steps a spot takes step i with probability p_i^beta / sum_j p_j^beta, p_i being
+/// the grains that the step would displace. Here p_i is the share of the spot's influence that lies below the surface,
+/// so that no grains have to be counted: 1 for all steps deep in the packing, where the walk stays as it is. Near the
+/// surface spots so go where it is higher, and it comes down there; beta is how strongly.
+///
+/// The surface over a column, 2 diameters wide, is the highest centre of a grain there; between the columns' axes it is
+/// interpolated. Over a column without grains it is at the height of the outlets.
+class FreeSurface {
+ public:
+  /// `diameter`: of grains. The container must outlive the surface, or be replaced.
+  FreeSurface(const SpotParameters& parameters, const Container& container, double diameter);
+
+  bool steers() const { return beta_ > 0.0; }
+
+  /// Forgets all grains.
+  void clear() { heights_.clear(); }
+  void add(const Vector3& grain);
+  /// Collective. After all ranks have added their grains.
+  void gather(Communicator& communicator);
+
+  double height(const Vector3& place) const;
+
+  /// 2010's rule for any number of candidates, of which the middles are given, and a uniform number from 0 to 1. They
+  /// are equally likely where all or none of the influence is below the surface.
+  std::size_t choose(const std::vector<Vector3>& middles, double uniform) const;
+
+  /// Can the surface matter for a spot that steps from here to there or less far? If not, all steps are alike.
+  bool is_near(const Vector3& place) const { return place.z() + margin_ > lowest_; }
+
+  void replace_container(const Container& container) { container_ = &container; }
+
+  void save(Bytes& bytes) const;
+  /// Throws InvalidState if what save() appended is damaged.
+  void restore(ByteReader& saved);
+
+  std::size_t memory() const { return heights_.capacity() * sizeof(double); }
+
+ private:
+  using Column = std::array<int, 2>;
+  double place_of(const Vector3& place, std::size_t axis) const;
+  bool covered(const Column& column) const;
+  std::size_t at(const Column& column) const;
+  void cover(const Column& low, const Column& high);
+  double height_over(Column column) const;
+  void find_lowest();
+
+  const Container* container_;
+  const InfluenceProfile* profile_;
+  double radius_, beta_, margin_;
+  Vector3 origin_;
+  std::array<double, 2> width_;
+  Column period_ = {0, 0};               // in columns; 0 where nothing repeats
+  Column low_ = {0, 0}, high_ = {0, 0};  // columns covered: from low_ to high_, exclusive
+  std::vector<double> heights_;          // over these
+  double lowest_;
+};
+
+}  // namespace spot
