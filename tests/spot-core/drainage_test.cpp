@@ -576,6 +576,16 @@ TEST(DrainageUnit, StepsThatNoRelaxationCouldFollowAreRefusedWithTheirBound) {
   EXPECT_THAT(refusal_of(&SpotParameters::speed, 1e-12), AllOf(HasSubstr("3.63e+14"), HasSubstr("most 10000000")));
 }
 
+TEST(DrainageUnit, ASpotThatTakesUpVolumeDisplacesByMore) {
+  SpotParameters spots = scenes::paper_spots();
+  spots.fixed_volume = 2000.0;
+  EXPECT_NO_THROW(drainage_of({}, spots));
+  spots.critical_fraction = 0.6;
+  spots.exchange_length = 1.0;
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { drainage_of({}, spots); }),
+              AllOf(HasSubstr("up to 0.687"), HasSubstr("at most 0.5")));
+}
+
 TEST(DrainageUnit, APackingThatCollapsesInFlowIsAnError) {
   SpotParameters spots = scenes::paper_spots();
   spots.influence = 0.2;
