@@ -64,6 +64,7 @@ class PlainDrainage {
         outlet_(outlet),
         container_(std::move(container)),
         population_(spots, *container_, 1.0),
+        critical_(spots, 1.0),
         q_(spot::Quantum(1.0, extent).length()),
         grains_(grains) {
     for (Grain& grain : grains_)
@@ -83,16 +84,26 @@ class PlainDrainage {
   /// Moves that moved grains, and relaxations.
   int effective_moves() const { return effective_moves_; }
   int sweeps() const { return sweeps_; }
+  /// In parts of a newborn spot's volume.
+  double volume_left() const { return volume_left_; }
+  /// Of live spots, over that of a newborn one, where it is another.
+  const std::map<std::int64_t, double>& volumes() const { return volumes_; }
 
  private:
   double rounded(double length) const { return std::nearbyint(length / q_) * q_; }
 
-  double weight_of(const Move& move) const {
-    if (spots_.fixed_volume == 0.0) return 1.0;
+  double weight_of(const Move& move) {
     int enclosed = 0;
     for (const Grain& grain : grains_)
       enclosed += !grain.held && squared(grain.position - move.middle) <= spots_.radius * spots_.radius;
-    return spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed * spot::grain_volume);
+    enclosed *= spot::grain_volume;
+    population_.carry(move, enclosed, *container_);  // or its spots do not know how the flow is sheared
+    const double weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet_, enclosed);
+    if (!critical_.on()) return weight;
+    const double volume = volumes_.count(move.spot) > 0 ? volumes_[move.spot] : 1.0;
+    volumes_[move.spot] = critical_.volume_after(volume, move, enclosed, 0.0, *container_);
+    volume_left_ += volume - volumes_[move.spot];
+    return weight * volume;
   }
 
   bool relaxes_around(const Move& move) const {
@@ -133,7 +144,10 @@ class PlainDrainage {
       ++moved;
     }
     if (moved == 0) {
-      if (move.middle.z() > container_->outlets().height() + spots_.radius) population_.remove(move.spot);
+      if (move.middle.z() > container_->outlets().height() + spots_.radius) {
+        population_.remove(move.spot);
+        volumes_.erase(move.spot);
+      }
       return;
     }
     ++effective_moves_;
@@ -176,6 +190,9 @@ class PlainDrainage {
   double outlet_;
   std::shared_ptr<const Container> container_;
   Spots population_;
+  spot::CriticalState critical_;
+  std::map<std::int64_t, double> volumes_;
+  double volume_left_ = 0.0;
   double q_;
   std::vector<Grain> grains_, drained_;
   double time_ = 0.0;
@@ -193,6 +210,7 @@ struct Scheme {
   double influence;
   double fixed_volume = 0.0;
   bool together = false;
+  double critical_fraction = 0.0, shear_length = 0.0;
 };
 
 void PrintTo(const Scheme& scheme, std::ostream* out) { *out << scheme.name; }
@@ -224,7 +242,14 @@ TEST_P(DrainageBruteForce, EqualsThePlainAlgorithmToTheLastBit) {
   spots.influence = GetParam().influence;
   spots.fixed_volume = GetParam().fixed_volume;
   spots.together = GetParam().together;
-  std::vector<Grain> grains = filling(6.0);
+  spots.critical_fraction = GetParam().critical_fraction;
+  spots.exchange_length = 0.2;
+  spots.shear_length = GetParam().shear_length;
+  if (spots.critical_fraction > 0.0) {  // to where they leave volume in fewer moves
+    spots.step_height = 0.8;
+    spots.injection_rate = 60.0;
+  }
+  std::vector<Grain> grains = filling(spots.critical_fraction > 0.0 ? 12.0 : 6.0);
   grains[40].held = grains[41].held = true;
   TimeOrderedDrainage drainage = drainage_of(grains, spots, GetParam().relaxation);
   PlainDrainage plain(spots, GetParam().relaxation, -1.0, scenes::small_silo(6.0, 4.0), grains, 100.0);
@@ -239,6 +264,11 @@ TEST_P(DrainageBruteForce, EqualsThePlainAlgorithmToTheLastBit) {
   EXPECT_EQ(drainage.counters().moves, plain.moves());
   EXPECT_EQ(drainage.counters().sweeps, plain.sweeps());
   expect_as_many_sweeps_as_scheduled(plain, GetParam().relaxation, spots.mean_waiting_time());
+  EXPECT_EQ(static_cast<double>(drainage.counters().volume_left) / spot::CriticalState::volume_parts,
+            plain.volume_left());
+  EXPECT_EQ(std::abs(plain.volume_left()) > 1.0, spots.critical_fraction > 0.0);
+  for (const spot::Spot& spot : drainage.spots())
+    EXPECT_EQ(spot.volume, plain.volumes().count(spot.id) > 0 ? plain.volumes().at(spot.id) : 1.0);
 }
 
 Scheme make_scheme(const std::string& name, double influence, RelaxationStrength strength, double shell, int every) {
@@ -262,6 +292,14 @@ Scheme with(Scheme scheme, double fixed_volume, bool together) {
   return scheme;
 }
 
+Scheme with_ingredients(Scheme scheme, double fixed_volume, double critical_fraction, double shear_length) {
+  scheme.fixed_volume = fixed_volume;
+  scheme.critical_fraction = critical_fraction;
+  scheme.shear_length = shear_length;
+  scheme.name += std::string(critical_fraction > 0.0 ? "Critical" : "") + (shear_length > 0.0 ? "Shear" : "");
+  return scheme;
+}
+
 const Scheme strong = make_scheme("Strong", 0.02, RelaxationStrength::half_each, 1.0, 1);
 const Scheme chance = make_scheme("Chance", RelaxationSchedule::chance, 4);
 const Scheme global = make_scheme("Global", RelaxationSchedule::global, 3);
@@ -270,6 +308,9 @@ INSTANTIATE_TEST_SUITE_P(Schemes, DrainageBruteForce,
                          testing::Values(make_scheme("Of2006", 2.5e-3, RelaxationStrength::full_each, 1.0, 1),
                                          make_scheme("Of2010", 2.5e-3, RelaxationStrength::half_each, 1.0, 1), strong,
                                          with(strong, 77.0, false), with(strong, 0.0, true), with(strong, 77.0, true),
+                                         with_ingredients(strong, 77.0, 0.6, 0.0),
+                                         with_ingredients(strong, 0.0, 0.0, 5.0),
+                                         with_ingredients(strong, 77.0, 0.6, 5.0),
                                          chance, with(chance, 0.0, true),
                                          make_scheme("OneInOne", RelaxationSchedule::chance, 1),
                                          make_scheme("EachSpot", RelaxationSchedule::spot, 3),
@@ -574,6 +615,16 @@ TEST(DrainageUnit, StepsThatNoRelaxationCouldFollowAreRefusedWithTheirBound) {
   EXPECT_THAT(refusal_of(&SpotParameters::step_height, 1e-300), AllOf(HasSubstr("1e-300"), HasSubstr("least 1e-06")));
   EXPECT_THAT(refusal_of(&SpotParameters::injection_rate, 1e9), AllOf(HasSubstr("1e+09"), HasSubstr("most 10000000")));
   EXPECT_THAT(refusal_of(&SpotParameters::speed, 1e-12), AllOf(HasSubstr("3.63e+14"), HasSubstr("most 10000000")));
+}
+
+TEST(DrainageUnit, ASpotThatTakesUpVolumeDisplacesByMore) {
+  SpotParameters spots = scenes::paper_spots();
+  spots.fixed_volume = 2000.0;
+  EXPECT_NO_THROW(drainage_of({}, spots));
+  spots.critical_fraction = 0.6;
+  spots.exchange_length = 1.0;
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { drainage_of({}, spots); }),
+              AllOf(HasSubstr("up to 0.687"), HasSubstr("at most 0.5")));
 }
 
 TEST(DrainageUnit, APackingThatCollapsesInFlowIsAnError) {

@@ -97,6 +97,93 @@ TEST(ParametersUnit, DilationIsAShare) {
   EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }), HasSubstr("step together"));
 }
 
+/// As the fitted ones.
+SpotParameters critical_spots() {
+  SpotParameters spots = scenes::paper_spots();
+  spots.fixed_volume = 77.0;
+  spots.critical_fraction = 0.58;
+  spots.exchange_length = 2.0;
+  return spots;
+}
+
+std::string refusal_of(const SpotParameters& spots) {
+  return scenes::text_of<InvalidParameter>([&] { spots.validate(); });
+}
+
+TEST(ParametersUnit, WithoutACriticalStateSpotsAreThoseOf2006) {
+  const SpotParameters spots;
+  EXPECT_EQ(spots.critical_fraction, 0.0);
+  EXPECT_EQ(spots.dilatancy, 0.0);
+  EXPECT_EQ(spots.shear_length, 0.0);
+  EXPECT_FALSE(spots.shears());
+}
+
+TEST(ParametersUnit, CriticalPackingFractionsAreThoseOfGrainsInContact) {
+  SpotParameters spots = critical_spots();
+  for (const double good : {0.5, 0.58, 0.7}) {
+    spots.critical_fraction = good;
+    EXPECT_NO_THROW(spots.validate());
+  }
+  for (const double bad : {-0.58, 1e-300, 0.499, 0.701, 1.0, infinity, -infinity, std::nan("")}) {
+    spots.critical_fraction = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("critical packing fraction is "), HasSubstr("from 0.5 to 0.7")));
+  }
+}
+
+TEST(ParametersUnit, ACriticalStateNeedsAnExchangeLengthOfATenthOfAStep) {
+  SpotParameters spots = critical_spots();
+  for (const double bad : {0.0, -1.0, infinity, -infinity, std::nan("")}) {
+    spots.exchange_length = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("exchange length is "), HasSubstr("must be positive and finite")));
+  }
+  spots.step_height = 0.8;
+  spots.exchange_length = 0.079;
+  EXPECT_THAT(refusal_of(spots),
+              AllOf(HasSubstr("exchange length is 0.079 "), HasSubstr("at least 0.1 of"), HasSubstr("height, 0.8")));
+  for (const double good : {0.081, 2.0, 1e300}) {
+    spots.exchange_length = good;
+    EXPECT_NO_THROW(spots.validate());
+  }
+  spots.critical_fraction = 0.0;
+  spots.exchange_length = 0.0;
+  EXPECT_NO_THROW(spots.validate()) << "it is off";
+}
+
+TEST(ParametersUnit, ACriticalStateNeedsAFixedVolume) {
+  SpotParameters spots = critical_spots();
+  spots.fixed_volume = 0.0;
+  EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("critical packing fraction is 0.58 "), HasSubstr("no fixed volume")));
+}
+
+TEST(ParametersUnit, DilatancyIsNotNegativeAndLowersACriticalPackingFraction) {
+  SpotParameters spots = critical_spots();
+  for (const double good : {0.0, 0.1, 1e300}) {
+    spots.dilatancy = good;
+    EXPECT_NO_THROW(spots.validate());
+    EXPECT_EQ(spots.shears(), good > 0.0);
+  }
+  for (const double bad : {-0.1, infinity, -infinity, std::nan("")}) {
+    spots.dilatancy = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("dilatancy is "), HasSubstr("zero (off) or positive")));
+  }
+  spots = scenes::paper_spots();
+  spots.dilatancy = 0.1;
+  EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("dilatancy is 0.1 "), HasSubstr("needs a critical packing fraction")));
+}
+
+TEST(ParametersUnit, ShearLengthIsNotNegative) {
+  SpotParameters spots = scenes::paper_spots();
+  for (const double good : {0.0, 2.0, 1e300}) {
+    spots.shear_length = good;
+    EXPECT_NO_THROW(spots.validate());
+    EXPECT_EQ(spots.shears(), good > 0.0);
+  }
+  for (const double bad : {-0.1, infinity, -infinity, std::nan("")}) {
+    spots.shear_length = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("shear length of spots is "), HasSubstr("zero (off) or positive")));
+  }
+}
+
 TEST(ParametersUnit, DiffusionLengthOf2006) {
   SpotParameters spots = scenes::paper_spots();
   EXPECT_NEAR(spots.diffusion_length(), 1.156, 1e-12);

@@ -8,7 +8,8 @@
 namespace spot {
 
 double largest_weight(const SpotParameters& parameters) {
-  return std::max(1.0, parameters.fixed_volume / calibration::least_enclosed);
+  const double volume = parameters.critical_fraction > 0.0 ? calibration::most_volume : 1.0;
+  return std::max(1.0, parameters.fixed_volume * volume / calibration::least_enclosed);
 }
 
 double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed) {

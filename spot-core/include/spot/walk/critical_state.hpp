@@ -27,8 +27,8 @@ class CriticalState {
 
   /// N_c: the volume of grains around the middle of a move, each place counted by its share of the influence, if the
   /// packing is critical there up to walls calibration::inset_of_walls farther in; in volumes of a grain. Each wall
-  /// cuts off what a plane at its distance would: exact for flat walls that do not meet within R_s. `shear`: s there (1
-  /// / length).
+  /// cuts off what a plane at its distance would of what others left: exact where no more than one is that near, and
+  /// flat. `shear`: s there (1 / length).
   double enclosed(const Vector3& middle, double shear, const Container& container) const;
 
   /// What the spot of a move carries after it, if it carried `volume` in it and enclosed `enclosed` (1024 =
