@@ -495,6 +495,7 @@ TEST(SpotsStatistical, ShearLeavesAShareOfStepsSideways) {
       parameters.shear_length = length;
       parameters.persistence = persistence;
       const spot::FlowField flow = planted_shear(parameters, *space);
+      const spot::FreeSurface surface(parameters, *space, 1.0);
       const Vector3 place(1.0, 0.5, 0.3);
       const double shear = flow.shear(place), expected = 1.0 / (1.0 + length * shear);
       ASSERT_NEAR(shear, 0.1, 0.005);
@@ -506,7 +507,7 @@ TEST(SpotsStatistical, ShearLeavesAShareOfStepsSideways) {
         Spot spot = walk.birth(id, 0.0, *space);
         for (int step = 0; step < 10; ++step) {
           spot.position = place;
-          const Move move = walk.step(spot, *space, flow);
+          const Move move = walk.step(spot, {*space, flow, surface});
           EXPECT_NEAR(move.step.z(), parameters.step_height, 1e-12);
           if (move.step.head<2>().norm() == 0.0) continue;
           ++sideways;

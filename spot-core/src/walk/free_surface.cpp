@@ -129,7 +129,7 @@ std::size_t FreeSurface::choose(const std::vector<Vector3>& middles, double unif
   for (const Vector3& middle : middles) {
     // As much of it is below the surface as is above a plane as far on the other side.
     const double below = profile_->part_above((height(middle) - middle.z()) / radius_);
-    weights.push_back(pow(below, beta_));
+    weights.push_back(pow(std::clamp(below, 0.0, 1.0), beta_));  // of rounded sums, which may be below 0
     sum += weights.back();
   }
   const std::size_t last = middles.size() - 1;
