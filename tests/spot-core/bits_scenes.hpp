@@ -44,6 +44,7 @@ class PinnedScenes {
     add_to_both_drivers(true);
     add_windowed();
     add_time_ordered();
+    for (const bool time_ordered : {false, true}) add(plain(time_ordered, "all-ingredients"), all_ingredients);
   }
   const std::vector<PinnedScene>& all() const { return all_; }
 
@@ -96,6 +97,19 @@ class PinnedScenes {
     scene.relaxation.momentum = 0.8;
     scene.relaxation.contact_overlap = 1.5e-3;
     scene.counts_moves = true;
+  }
+
+  /// Spots that leave volume behind and whose walk shear narrows; they climb to where they do so, in a taller filling.
+  static void all_ingredients(PinnedScene& scene) {
+    all_at_once(scene);
+    scene.spots.critical_fraction = 0.58;
+    scene.spots.exchange_length = 1.0;
+    scene.spots.dilatancy = 0.2;
+    scene.spots.shear_length = 2.0;
+    scene.spots.speed = 5.0;
+    scene.spots.injection_rate = 60.0;
+    scene.grains = filling(14.0);
+    scene.end = 3.0;
   }
 
   static void let_come_and_go(PinnedScene& scene) {

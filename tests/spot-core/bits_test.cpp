@@ -66,6 +66,7 @@ Bytes bytes_of(const Counters& counters, const std::map<std::int64_t, std::int64
   for (const std::int64_t count :
        {counters.moves, counters.volume_moved, counters.sweeps, counters.grains_swept, counters.drained})
     spot::append(bytes, count);
+  if (counters.volume_left != 0) spot::append(bytes, counters.volume_left);  // as with volumes of spots
   for (const auto& [id, moves] : received) {
     spot::append(bytes, id);
     spot::append(bytes, moves);
@@ -214,6 +215,7 @@ TEST_P(BitsInvariance, AreAsRecorded) {
   EXPECT_GT(outcome.counters.moves, 100) << "or it shows little";
   EXPECT_FALSE(outcome.grains.empty());
   EXPECT_FALSE(outcome.spots.empty());
+  EXPECT_EQ(outcome.counters.volume_left != 0, scene.spots.critical_fraction > 0.0);
   const std::string found = checksums(outcome);
   auto table = recorded();
   if (std::getenv("SPOT_RECORD_BITS")) {

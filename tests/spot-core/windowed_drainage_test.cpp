@@ -485,4 +485,37 @@ TEST(WindowedDrainageStatistical, DrainsAsManyAsTheTimeOrderedDriver) {
   EXPECT_NEAR(static_cast<double>(coarse.counters().drained) / drained, 1.0, 0.05);
 }
 
+/// The same spots, another algorithm. Without relaxation, which makes the two packings differently dense, the ratio is
+/// 0.9993 +- 0.0014 over seeds 1-6; with it 0.980 +- 0.001. The bounds are the mean and some four standard deviations.
+TEST(WindowedDrainageStatistical, SpotsLeaveAsMuchVolumeAsWithTheTimeOrderedDriver) {
+  SpotParameters spots = coarse_spots();
+  spots.profile = spot::InfluenceProfile::parabolic;
+  spots.influence = 0.01;
+  spots.injection_rate = 60.0;
+  spots.fixed_volume = 40.0;
+  spots.critical_fraction = 0.5;
+  spots.exchange_length = 1.0;
+  spots.dilatancy = 0.5;
+  spots.shear_length = 2.0;
+  spots.seed = 1;
+  const auto grains = filling(24.0);
+  for (const bool relaxed : {false, true}) {
+    RelaxationParameters by_moves, by_windows = coarse_relaxation();
+    if (!relaxed) {
+      by_moves.every = 0;
+      by_windows.tolerance = 1e6;
+    }
+    spot::TimeOrderedDrainage reference(spots, by_moves, DrainageLimits{-1.0, 0.03, 1.0}, scenes::small_silo(6.0, 4.0),
+                                        spot::Packing(1.0, 100.0, grains));
+    WindowedDrainage windowed = drainage_of(grains, spots, by_windows, 0.02, 1, 1.0);
+    reference.advance_to(10.0);
+    windowed.advance_to(10.0);
+    const auto left = [](spot::Drainage& drainage) {
+      return static_cast<double>(drainage.total().volume_left) / spot::CriticalState::volume_parts;
+    };
+    EXPECT_GT(left(reference), 200.0) << "of 600 spots";
+    EXPECT_NEAR(left(windowed) / left(reference), relaxed ? 0.98 : 0.9993, relaxed ? 0.01 : 0.006);
+  }
+}
+
 }  // namespace
