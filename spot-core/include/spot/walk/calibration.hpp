@@ -51,6 +51,6 @@ constexpr double least_share_of_critical = 0.85;
 
 /// Bounds of the volume that a spot carries, over that of a newborn one. Choices: a spot that has left nearly all of it
 /// goes on climbing, to make good what others have left too much of; one must not dig a hole.
-constexpr double least_volume = 0.1, most_volume = 4.0;
+constexpr double least_volume = 0.1, most_volume = 1.3;
 
 }  // namespace spot::calibration
