@@ -12,13 +12,13 @@ constexpr double influence = 2.5e-3;
 /// b_s; 2006 has 1.14 for its DEM.
 constexpr double diffusion_length = 1.25;
 
-/// Of spots from side walls and from the base: chosen from the runs that analysis/README.md lists, with one parameter
-/// changed at a time.
+/// Of spots from side walls and from the base, from runs with one of them changed at a time
+/// (docs/notes/2026-11-23-side-walls.md, 2026-11-22-volume-at-the-orifice.md).
 constexpr double side_buffer = 0.25, base_buffer = 2.0;
 
 /// Longest windows, by the climb of a spot and by the flow of grains through the orifice: longer ones relax more of the
 /// neighbouring cells at the same time, which is both cheaper and closer to DEM, until grains go too far in one
-/// (analysis/README.md).
+/// (analysis/one_factor.py, its windows).
 constexpr double climb_in_a_window = 0.32, flow_in_a_window = 0.15;
 
 }  // namespace calibration

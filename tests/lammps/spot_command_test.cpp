@@ -51,7 +51,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
       "accuracy fast momentum 0.3 contact 2e-3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 "
-      "peratom yes");
+      "critical 0.58 1.5 dilatancy 0.1 shear 2.5 surface 3 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -62,6 +62,11 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.spots.step_height, 0.2);
   EXPECT_EQ(c.spots.persistence, 0.4);
   EXPECT_EQ(c.spots.dilation, 0.03);
+  EXPECT_EQ(c.spots.critical_fraction, 0.58);
+  EXPECT_EQ(c.spots.exchange_length, 1.5);
+  EXPECT_EQ(c.spots.dilatancy, 0.1);
+  EXPECT_EQ(c.spots.shear_length, 2.5);
+  EXPECT_EQ(c.spots.surface_exponent, 3.0);
   EXPECT_EQ(c.spots.speed, 2.0);
   EXPECT_EQ(c.spots.injection_rate.largest(), 300.0);
   EXPECT_EQ(c.spots.seed, 17U);
@@ -224,8 +229,9 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
   EXPECT_THAT(error_of(complete + "relax often"),
               AllOf(HasSubstr("'relax often' is not known"), HasSubstr("'relax tol delta'"), HasSubstr("'relax never'"),
                     HasSubstr("'every', 'chance', 'spot' and 'global'")));
-  for (const std::string keyword : {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads",
-                                    "momentum", "contact", "volume"})
+  for (const std::string keyword :
+       {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads", "momentum", "contact",
+        "volume", "critical", "critical 0.58", "dilatancy", "shear", "surface"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -245,11 +251,40 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
               AllOf(HasSubstr("'contact' is -0.001"), HasSubstr("zero or positive")));
   EXPECT_THROW(resolved("contact 0.1").relaxation.validate(), InvalidParameter);
   EXPECT_THAT(error_of(complete + "volume -1"), AllOf(HasSubstr("'volume' is -1"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "critical -0.58 1"),
+              AllOf(HasSubstr("'critical' is -0.58"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "critical 0.58 0"), AllOf(HasSubstr("'critical' is 0"), HasSubstr("be positive")));
+  EXPECT_THAT(error_of(complete + "critical 0.58 shear 2"), HasSubstr("'shear' is not a finite number"));
+  EXPECT_THAT(error_of(complete + "dilatancy -1"),
+              AllOf(HasSubstr("'dilatancy' is -1"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "shear -1"), AllOf(HasSubstr("'shear' is -1"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "surface -1"), AllOf(HasSubstr("'surface' is -1"), HasSubstr("zero or positive")));
+  EXPECT_THROW(resolved("surface 33").spots.validate(), InvalidParameter);
   EXPECT_THAT(error_of(complete + "alpha 0"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(complete + "volume inf"), HasSubstr("'inf' is not a finite number"));
   // What the parser cannot know is refused by who uses it.
   EXPECT_EQ(parse(complete + "threads 99999999999").threads, 1 << 30);
   EXPECT_THROW(resolved("momentum 1").relaxation.validate(), InvalidParameter);
+  for (const std::string more : {"volume 0 critical 0.58 1", "volume 77 critical 0.4 1", "volume 77 critical 0.58 0.01",
+                                 "volume 77 dilatancy 0.1", "volume 77 critical 0 1 dilatancy 0.1"})
+    EXPECT_THROW(resolved(more).spots.validate(), InvalidParameter) << more;
+  EXPECT_NO_THROW(resolved("volume 77 critical 0.58 1 dilatancy 0.1 shear 2").spots.validate());
+}
+
+TEST(SpotCommand, SettingsTellWhatSpotsLeaveAndHowShearNarrowsThem) {
+  const auto settings = [](const std::string& more) {
+    std::map<std::string, std::string> all;
+    for (const auto& [name, value] : resolved(more).settings()) all[name] = value;
+    return all;
+  };
+  auto found = settings("volume 77 critical 0.625 1.5 dilatancy 0.125 shear 2.5");
+  EXPECT_EQ(found["critical"], "0.625 1.5");
+  EXPECT_EQ(found["dilatancy"], "0.125");
+  EXPECT_EQ(found["shear"], "2.5");
+  found = settings("");
+  EXPECT_EQ(found["critical"], "0 0");
+  EXPECT_EQ(found["dilatancy"], "0");
+  EXPECT_EQ(found["shear"], "0");
 }
 
 TEST(SpotCommand, OnlyThreadsMayBeModified) {
@@ -294,7 +329,9 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "together",  "persistence", "dilation",
                                                "threads",   "tol",         "chance",
                                                "spot",      "global",      "silo",
-                                               "peratom",   "yes",         "no"};
+                                               "peratom",   "yes",         "no",
+                                               "critical",  "dilatancy",   "shear",
+                                               "surface"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -313,6 +350,9 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
       EXPECT_GE(command.threads, 1);
       EXPECT_GE(command.relaxation.every, 0);
       EXPECT_GE(command.spots.fixed_volume, 0.0);
+      EXPECT_GE(command.spots.critical_fraction, 0.0);
+      EXPECT_GE(command.spots.dilatancy, 0.0);
+      EXPECT_GE(command.spots.shear_length, 0.0);
       command.resolve(1.0);
       EXPECT_GT(command.relaxation.tolerance, 0.0);
     } catch (const InvalidParameter& error) {
@@ -398,6 +438,10 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"volume", in(c.spots.fixed_volume, "")},
       {"persistence", in(c.spots.persistence, "")},
       {"dilation", in(c.spots.dilation, "")},
+      {"critical", in(c.spots.critical_fraction, "")},
+      {"dilatancy", in(c.spots.dilatancy, "")},
+      {"shear", in(c.spots.shear_length, "")},
+      {"surface", in(c.spots.surface_exponent, "")},
       {"steps", c.spots.together ? "together" : "poisson"},
       {"threads", std::to_string(c.threads)},
       {"outlet", *c.outlet == c.orifice->centre.z() ? "the height of the orifice" : "elsewhere"},

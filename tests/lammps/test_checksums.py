@@ -45,10 +45,15 @@ def come_and_go(folder, ranks):
     one_run(folder, ranks, fix=ALL, run=f"run 10\n{between}\nrun {STEPS - 20}")
 
 
+# With what spots leave behind, and shear: spots climb to where they do so in the silo's 10 d.
+INGREDIENTS = ALL + " profile uniform radius 2 volume 37 critical 0.56 1 dilatancy 0.1 shear 2"
+
+
 # By name: what leaves grains.dump in the folder.
 SCENES = {
     "box": lambda folder, ranks: one_run(folder, ranks),
     "box-all": lambda folder, ranks: one_run(folder, ranks, fix=ALL),
+    "box-ingredients": lambda folder, ranks: one_run(folder, ranks, fix=INGREDIENTS),
     "box-fast": lambda folder, ranks: one_run(folder, ranks, fix=FIX + " accuracy fast"),
     "box-exact": lambda folder, ranks: one_run(folder, ranks, fix=FIX + " accuracy exact"),
     "cylinder": cylinder,

@@ -9,9 +9,9 @@ import pytest
 from lammps_runs import (FIX, HALF_DEPTH, HALF_WIDTH, LOAD_SPOT, ROOT, deck, lattice, positions, programs, read_dump, run_ok, thermo,
                          write_data)
 
-# f_drain[1] to f_drain[7]
-SPOTS, MOVES, DRAINED, MASS, OUTFLOW, OVERLAP, SWEEPS = (f"f_drain[{k}]" for k in range(1, 8))
-DUMP_SPOTS = "dump spots all local 1 spots.dump f_drain[1] f_drain[2] f_drain[3] f_drain[4] f_drain[5]"
+# f_drain[1] to f_drain[8]
+SPOTS, MOVES, DRAINED, MASS, OUTFLOW, OVERLAP, SWEEPS, LEFT = (f"f_drain[{k}]" for k in range(1, 9))
+DUMP_SPOTS = "dump spots all local 1 spots.dump f_drain[1] f_drain[2] f_drain[3] f_drain[4] f_drain[5] f_drain[6]"
 
 
 @pytest.fixture(scope="module")
@@ -84,16 +84,33 @@ def test_spots_in_dump_local(drained):
     log, _, spots = drained
     assert len(spots) == 31
     for k, (_, frame) in enumerate(spots):
-        assert list(frame) == [f"f_drain[{c}]" for c in range(1, 6)]
-        identity, x, y, z, steps = frame.values()
+        assert list(frame) == [f"f_drain[{c}]" for c in range(1, 7)]
+        identity, x, y, z, steps, volume = frame.values()
         assert len(identity) == log[SPOTS][k]
         assert (np.diff(identity) > 0).all()
+        assert (volume == 1).all() and log[LEFT][k] == 0
         assert (steps == steps.round()).all() and (steps >= 0).all()
         assert (abs(x) <= HALF_WIDTH - 0.25 + 1e-9).all() and (abs(y) <= HALF_DEPTH - 0.25 + 1e-9).all()
         assert z == pytest.approx(-3.53 + 0.4 * steps)  # births R_s below the orifice, steps of 0.4 d
     # Poisson: 100 births a time; the last spot ever born has the largest id.
     born = spots[-1][1]["f_drain[1]"].max() + 1
     assert abs(born - 300) < 5 * np.sqrt(300)
+
+
+@pytest.mark.parametrize("accuracy", ["normal", "exact"])
+def test_volume_that_spots_have_left(tmp_path, accuracy):
+    """Grains' worth of it: w N for each newborn spot's volume that live ones lack. Removed spots take theirs with them."""
+    fix = f"{FIX} accuracy {accuracy} profile uniform radius 2 volume 37 critical 0.52 1 dilatancy 0.1 shear 2 dz 0.4"
+    after = f"dump_modify grains every 1\nthermo 1\n{DUMP_SPOTS}\ndump_modify spots format float %.12g"
+    log = thermo(run_ok(deck(fix=fix, run="run 40", after=after), tmp_path))
+    compared = 0
+    for k, (_, frame) in enumerate(read_dump(tmp_path / "spots.dump")):
+        assert (frame["f_drain[6]"] >= 0.1).all() and (frame["f_drain[6]"] <= 4).all()
+        if frame["f_drain[5]"].sum() != log[MOVES][k]:  # a spot is out at the top
+            continue
+        assert log[LEFT][k] == pytest.approx(0.01 * 37 * (1 - frame["f_drain[6]"]).sum(), rel=1e-9, abs=1e-9)
+        compared += log[LEFT][k] != 0
+    assert compared > 5
 
 
 def test_no_grain_outside_and_none_too_deep(drained):

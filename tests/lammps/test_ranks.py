@@ -25,6 +25,15 @@ def test_number_of_ranks(alone, tmp_path, ranks):
     assert drain(tmp_path, fix=FIX, launcher=on_ranks(ranks)) == alone
 
 
+def test_what_spots_leave_and_how_shear_narrows_them(tmp_path):
+    fix = FIX + " profile uniform radius 2 volume 37 critical 0.56 1 dilatancy 0.1 shear 2"
+    drained = []
+    for ranks in (1, 3, 4):
+        (tmp_path / str(ranks)).mkdir()
+        drained.append(drain(tmp_path / str(ranks), fix=fix, run="run 40", launcher=on_ranks(ranks)))
+    assert drained[0] == drained[1] == drained[2]
+
+
 @needs_distribution
 def test_plugin(alone, tmp_path):
     assert drain(tmp_path, fix=FIX, program=DISTRIBUTION, launcher=on_ranks(2)) == alone

@@ -94,7 +94,8 @@ def half(tmp_path_factory):
 
 @pytest.mark.parametrize("change, said", [("seed 2", "seed was 1 in the run"), ("influence 0.02", "influence was 0.01"),
                                           ("alpha 1.1", "alpha was 0.8"), ("window 0.0025", "window was 0.05"),
-                                          ("accuracy exact", "dz was 1.2"), ("outlet -0.5", "outlet was 0 in the run")])
+                                          ("accuracy exact", "dz was 1.2"), ("volume 77 critical 0.58 1", "critical was 0 0 in"),
+                                          ("shear 2", "shear was 0 in"), ("outlet -0.5", "outlet was 0 in the run")])
 def test_changed_parameters_are_refused(half, tmp_path, change, said):
     error = error_of(rest_of(half, 10, fix=f"{FIX} {change}"), tmp_path)
     assert said in error and "give the fix another ID" in error
@@ -144,7 +145,7 @@ def test_damaged_length_is_no_crash(half, tmp_path, bit):
         assert done.returncode > 0 and "ERROR" in done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("version", [4, 5, 7])
+@pytest.mark.parametrize("version", [4, 5, 6, 8])
 def test_another_version_is_refused_with_advice(half, tmp_path, version):
     """Version 4 has a length where those since have the version again, with all bits flipped."""
     data = bytearray(half.read_bytes())

@@ -84,8 +84,9 @@ TEST_P(CriticalStateAnalytic, WallsCutOffWhatPlanesDo) {
   EXPECT_NEAR(critical.enclosed({27.01, 0.01, 20.0}, 0.0, *silo) / at_wall, 1.0, 0.01);
 }
 
-/// Walls that meet, or face each other, within R_s are taken one after the other, which is exact for neither: so far
-/// off it is.
+/// Walls that meet, or face each other, within R_s are taken one after the other, which is exact for neither: too much
+/// by 1.1 % in corners, by 4.6 % in a slot as wide as R_s (with the uniform profile; half of that with the parabolic
+/// one).
 TEST_P(CriticalStateAnalytic, WhereWallsAreCloseTogetherItIsNearlySo) {
   const SpotParameters spots = critical_spots(GetParam());
   const CriticalState critical(spots, 1.0);
@@ -96,12 +97,12 @@ TEST_P(CriticalStateAnalytic, WhereWallsAreCloseTogetherItIsNearlySo) {
       const Vector3 at(10.0 - x, 10.0 - y, 20.0);
       const double expected =
           integral(spots, at, [&](const Vector3& p) { return p.x() <= 10.0 - inset && p.y() <= 10.0 - inset; });
-      EXPECT_NEAR(critical.enclosed(at, 0.0, *silo) / expected, 1.0, 0.06) << at.transpose();
+      EXPECT_NEAR(critical.enclosed(at, 0.0, *silo) / expected, 1.0, 0.015) << at.transpose();
     }
   const auto slot = spot::box_silo(-30.0, 30.0, -1.79, 1.79, spot::Orifice{{0.0, 0.0, 0.0}, 1.7}, {1.0, 1.0});
   const double expected =
       integral(spots, {0.0, 0.0, 20.0}, [&](const Vector3& p) { return std::abs(p.y()) <= 1.79 - inset; });
-  EXPECT_NEAR(critical.enclosed({0.0, 0.0, 20.0}, 0.0, *slot) / expected, 1.0, 0.06);
+  EXPECT_NEAR(critical.enclosed({0.0, 0.0, 20.0}, 0.0, *slot) / expected, 1.0, 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(Profiles, CriticalStateAnalytic, testing::ValuesIn(InfluenceProfile::all()),
