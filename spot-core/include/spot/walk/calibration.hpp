@@ -49,8 +49,9 @@ constexpr double least_height_of_exchange = 2.0;
 /// in a loose packing, and takes up nothing.
 constexpr double least_share_of_critical = 0.85;
 
-/// Bounds of the volume that a spot carries, over that of a newborn one. Choices: a spot that has left nearly all of it
-/// goes on climbing, to make good what others have left too much of; one must not dig a hole.
+/// Bounds of the volume that a spot carries, over that of a newborn one. One that has left nearly all of it goes on
+/// climbing, to make good what others have left too much of. The upper bound is a choice by what came out: with 4, moves
+/// near the surface left overlaps of 0.04 d, with 1.3, of 0.02 d, and all else came out the same.
 constexpr double least_volume = 0.1, most_volume = 1.3;
 
 }  // namespace spot::calibration
