@@ -143,7 +143,7 @@ class CriticalStateVolumeUnit : public testing::Test {
 TEST_F(CriticalStateVolumeUnit, ItFallsWhereGrainsAreDenseAndGrowsWhereTheyAreLoose) {
   for (const double times : {0.86, 0.95, 1.0, 1.02, 1.1, 1.5})
     for (const double climb : {0.1, 0.8})
-      for (const double volume : {0.3, 1.0, 1.4}) {
+      for (const double volume : {0.3, 0.7, 1.1}) {
         const double expected = volume * std::exp(-climb / spots_.exchange_length * (times - 1.0));
         EXPECT_NEAR(after(volume, move_at(20.0, climb), enclosed(times)), expected, 2e-5 * expected) << times;
       }
@@ -164,8 +164,8 @@ TEST_F(CriticalStateVolumeUnit, NearOutletsAndAtTheSurfaceItStays) {
 
 TEST_F(CriticalStateVolumeUnit, ItIsBounded) {
   EXPECT_NEAR(after(0.11, move_at(20.0, 2.0), enclosed(1.5)), spot::calibration::least_volume, 1e-9);
-  EXPECT_EQ(after(0.999 * spot::calibration::most_volume, move_at(20.0, 2.0), enclosed(0.9)),
-            spot::calibration::most_volume);
+  EXPECT_NEAR(after(0.999 * spot::calibration::most_volume, move_at(20.0, 2.0), enclosed(0.9)),
+              spot::calibration::most_volume, 1e-9);
 }
 
 TEST_F(CriticalStateVolumeUnit, ItIsAWholeNumberOfParts) {

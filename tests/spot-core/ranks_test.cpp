@@ -265,11 +265,16 @@ Bytes later(const Bytes& saved, std::int64_t steps, std::int64_t spots, std::int
     shift(steps);
     spot::append(bytes, reader.take<spot::Vector3>());
     shift(time);
-    for (int k = 0; k < 3; ++k) shift(0.0);  // direction, chance, relative speed
+    for (int k = 0; k < 4; ++k) shift(0.0);  // direction, chance, relative speed, volume
   }
   shift(std::int64_t{0});  // times that relative speeds were set
   for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // ends of the lattice of counts
   spot::append(bytes, reader.take_all<std::int64_t>());
+  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // and of the lattice of the flow
+  spot::append(bytes, reader.take_all<double>());
+  EXPECT_EQ(shift(std::uint64_t{0}), 0u) << "steps that the flow has not taken in";
+  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 2>>());  // of the columns of the surface
+  spot::append(bytes, reader.take_all<double>());
   spot::append(bytes, reader.take_all<char>());
   EXPECT_TRUE(reader.at_end());
   spot::seal(bytes);
