@@ -104,6 +104,7 @@ REFERENCES = {
                              packing="out-of-sample/packing.data.gz", variables={"half_width": "16", "orifice": "6.5"},
                              windows={"early": (20.0, 50.0), "late": (90.0, 140.0)},
                              not_carried={**NARROW, "residence_p84_10d*": CENSORED,
+                                          "stagnant_boundary_20d, late": NARROW["stagnant_boundary_30d*"],
                                           "arrival_*": "the flux through 30 d still grows at 50 tau"}),
     "half-full": Reference("out-of-sample/half-full.npz", 70.0, packing="out-of-sample/half-full-packing.data.gz",
                            windows={"early": (20.0, 60.0), "late": (90.0, 180.0)},

@@ -127,7 +127,7 @@ def test_references_carry_the_rows_that_they_are_said_to(name):
     dem = one_material.REFERENCES[name].load()[:1]
     verdicts = one_material.judge(name, dem, dem)
     carried = [one for one in criteria.CRITERIA if one_material.REFERENCES[name].why_not(one, dem[0]) is None]
-    assert len(carried) > 15
+    assert len(carried) > 8
     assert [one.label for one in carried if one.bound and verdicts[one].met is not True] == []
     assert [one.label for one in set(criteria.CRITERIA) - set(carried) if verdicts[one].met is not None] == []
 
