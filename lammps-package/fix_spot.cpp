@@ -139,12 +139,6 @@ struct FixSpot::Model {
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
   std::int64_t windows = 0;  // done since the fix was made; the clock of the spots
-  /// That spots have left in the packing, less what they took up, in grains.
-  double volume_left() {
-    const double parts = static_cast<double>(drainage->total().volume_left) / spot::CriticalState::volume_parts;
-    return parts * command.spots.influence * command.spots.fixed_volume;
-  }
-
   double window = 0.0;       // in time units; until the first step only what it would be
   int windows_per_step = 1;
   std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
@@ -154,6 +148,12 @@ struct FixSpot::Model {
   std::deque<Drained> drained = {{0, 0}};  // after each of the last command.average steps, and before
   std::vector<double> spots;               // SpotColumn values, a row a spot
   std::vector<double *> rows;
+
+  /// That spots have left in the packing, less what they took up, in grains.
+  double volume_left() {
+    const double parts = static_cast<double>(drainage->total().volume_left) / spot::CriticalState::volume_parts;
+    return parts * command.spots.influence * command.spots.fixed_volume;
+  }
 };
 
 /* ---------------------------------------------------------------------- */

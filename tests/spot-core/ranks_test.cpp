@@ -270,10 +270,10 @@ Bytes later(const Bytes& saved, std::int64_t steps, std::int64_t spots, std::int
   shift(std::int64_t{0});  // times that relative speeds were set
   for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // ends of the lattice of counts
   spot::append(bytes, reader.take_all<std::int64_t>());
-  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // and of the lattice of the flow
+  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // of that of the flow
   spot::append(bytes, reader.take_all<double>());
   EXPECT_EQ(shift(std::uint64_t{0}), 0u) << "steps that the flow has not taken in";
-  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 2>>());  // of the columns of the surface
+  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // and of the surface
   spot::append(bytes, reader.take_all<double>());
   spot::append(bytes, reader.take_all<char>());
   EXPECT_TRUE(reader.at_end());

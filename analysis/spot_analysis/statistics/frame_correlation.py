@@ -11,13 +11,11 @@ over the pairs of grains r apart and over all grains.
 """
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from .flow import common_grains
 from .mean_flow import COVER, core
 from .snapshot import LAG_TAU
-from .value import Value
-from .velocity_correlation import BOTTOM, EDGES, TOP
+from .velocity_correlation import BOTTOM, EDGES, TOP, pairs_by_distance, rms_difference
 
 NAME = "frame_correlation"
 MEANING = {
@@ -36,12 +34,8 @@ def residuals(places, values):
 def pair_sums(places, values):
     """Pairs (k,) in each bin of EDGES and the sum of the products of their two ``values`` (k,); places (n, 3), values (n,)."""
     bins = len(EDGES) - 1
-    first, second = cKDTree(places).query_pairs(EDGES[-1], output_type="ndarray").T
-    distance = np.sqrt(((places[first] - places[second])**2).sum(axis=1))
-    place = np.searchsorted(EDGES, distance, side="right") - 1
-    kept = (place >= 0) & (place < bins)
-    place, products = place[kept], (values[first] * values[second])[kept]
-    return np.bincount(place, minlength=bins), np.bincount(place, products, minlength=bins)
+    first, second, place = pairs_by_distance(places)
+    return np.bincount(place, minlength=bins), np.bincount(place, values[first] * values[second], minlength=bins)
 
 
 class Measurement:
@@ -99,7 +93,4 @@ def _root_of_mean(sums):
 
 def between(dem, spot):
     """Root mean square of the difference of C(r)."""
-    one, other = mean_correlation(dem), mean_correlation(spot)
-    if one is None or other is None:
-        return {"frame_correlation_rms": Value("1")}
-    return {"frame_correlation_rms": Value.of("1", np.sqrt(((one - other)**2).mean()))}
+    return {"frame_correlation_rms": rms_difference(mean_correlation(dem), mean_correlation(spot))}

@@ -28,17 +28,22 @@ MEANING = {
 NEEDS = {"*": ("pairs", "core")}
 
 
+def pairs_by_distance(places):
+    """first, second (p,): grains of the pairs whose distance lies in a bin of EDGES, and that bin (p,); places (n, 3)."""
+    first, second = cKDTree(places).query_pairs(EDGES[-1], output_type="ndarray").T
+    distance = np.sqrt(((places[first] - places[second])**2).sum(axis=1))
+    place = np.searchsorted(EDGES, distance, side="right") - 1
+    kept = (place >= 0) & (place < len(EDGES) - 1)
+    return first[kept], second[kept], place[kept]
+
+
 def frame_sums(middle, w):
     """Sums over the grains of a region: grains (), their moments (u,), pairs (k,), moments of pairs (k, u).
 
     middle : (n, 3); w : (n, SIZE) of ``mean_flow.Step``; k runs over the bins of EDGES, u over the triangle of w w^T
     """
     count, bins = len(middle), len(EDGES) - 1
-    first, second = cKDTree(middle).query_pairs(EDGES[-1], output_type="ndarray").T
-    distance = np.sqrt(((middle[first] - middle[second])**2).sum(axis=1))
-    place = np.searchsorted(EDGES, distance, side="right") - 1
-    kept = (place >= 0) & (place < bins)
-    first, second, place = first[kept], second[kept], place[kept]
+    first, second, place = pairs_by_distance(middle)
     partners = csr_matrix((np.ones(len(first)), (place * count + first, second)), shape=(bins * count, count)) @ w
     joint = np.einsum("nk,bnl->bkl", w, partners.reshape(bins, count, SIZE))
     return count, triangles(w.T @ w), np.bincount(place, minlength=bins), triangles(joint)
@@ -110,9 +115,13 @@ def quantities(view):
             "correlation_amplitude": estimate("1", lambda sums: fit(correlation(sums))[0])}
 
 
+def rms_difference(one, other):
+    """Value of the root mean square of the difference of two curves (k,); unknown where one of them is None."""
+    if one is None or other is None:
+        return Value("1")
+    return Value.of("1", np.sqrt(((one - other)**2).mean()))
+
+
 def between(dem, spot):
     """Root mean square of the difference of C(r)."""
-    one, other = mean_correlation(dem), mean_correlation(spot)
-    if one is None or other is None:
-        return {"correlation_rms": Value("1")}
-    return {"correlation_rms": Value.of("1", np.sqrt(((one - other)**2).mean()))}
+    return {"correlation_rms": rms_difference(mean_correlation(dem), mean_correlation(spot))}

@@ -69,6 +69,12 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
                                    ", the reach of newborn spots, and not above the orifice, ", base));
 }
 
+double Drainage::weigh(const Move& move, int enclosed, Spots& spots) {
+  const Spots::Carried carried = spots.carry(move, enclosed, container());
+  counters_.volume_left += carried.left;
+  return fixed_volume_weight(spots_, move.middle.z() - limits().outlet, enclosed) * carried.volume;
+}
+
 std::vector<Grain> Drainage::grains() const {
   std::vector<Grain> all;
   visit_grains([&](const Grain& grain) { all.push_back(grain); });

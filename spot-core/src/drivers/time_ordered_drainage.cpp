@@ -82,7 +82,8 @@ void TimeOrderedDrainage::carry_out(Move move) {
   packing_.refresh(container());
   const double reach = spot_parameters().radius + relaxation_parameters().shell * packing_.diameter();
   packing_.find_movable(move.middle, reach, near_);
-  if (spot_parameters().fixed_volume > 0.0 || spot_parameters().shears()) weigh(move);
+  if (spot_parameters().fixed_volume > 0.0 || spot_parameters().shears())
+    move.weight = weigh(move, enclosed_volume(packing_, near_, move, spot_parameters()), spots_);
   const int enclosed = displace(packing_, near_, move, spot_parameters(), received());
   count_move(enclosed);
   if (enclosed == 0) {
@@ -95,13 +96,6 @@ void TimeOrderedDrainage::carry_out(Move move) {
     relax(near_);
   }
   if (move.middle.z() - reach < limits().outlet) take_out_drained();
-}
-
-void TimeOrderedDrainage::weigh(Move& move) {
-  const int enclosed = enclosed_volume(packing_, near_, move, spot_parameters());
-  const Spots::Carried carried = spots_.carry(move, enclosed, container());
-  count_volume_left(carried.left);
-  move.weight = fixed_volume_weight(spot_parameters(), move.middle.z() - limits().outlet, enclosed) * carried.volume;
 }
 
 bool TimeOrderedDrainage::relaxes_around(const Move& move) const {

@@ -135,14 +135,8 @@ void WindowedDrainage::displace() {
 /// `enclosed`: volume of this rank's grains in each move.
 void WindowedDrainage::weigh(const std::vector<int>& enclosed, std::vector<Move>& moves) {
   moves_.sum_enclosed(enclosed);
-  for (SharedMove& shared : moves_.all()) {
-    if (!moves_.own(shared)) continue;
-    const Spots::Carried carried = spots_.carry(shared.move, shared.enclosed, container());
-    count_volume_left(carried.left);
-    shared.move.weight =
-        fixed_volume_weight(spot_parameters(), shared.move.middle.z() - limits().outlet, shared.enclosed) *
-        carried.volume;
-  }
+  for (SharedMove& shared : moves_.all())
+    if (moves_.own(shared)) shared.move.weight = Drainage::weigh(shared.move, shared.enclosed, spots_);
   spots_.update_flow(window_, *communicator_);
   if (spot_parameters().fixed_volume > 0.0) moves_.send_weights([this](const Move& move) { return reached(move); });
   for (std::size_t k = 0; k < moves.size(); ++k) moves[k].weight = moves_.all()[k].move.weight;

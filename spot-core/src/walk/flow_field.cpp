@@ -33,8 +33,7 @@ void FlowField::add(const Move& move, double volume) {
 void FlowField::update(double elapsed, Communicator& communicator) {
   std::vector<Vector3> middles;
   for (const Step& step : added_) middles.push_back(step.middle);
-  const NodeLattice::Box box = lattice_.around(middles, communicator);
-  if (box.size() > 0) grow_to(box);
+  grow_to(lattice_.around(middles, communicator));
   if (box_.size() == 0) return;
   std::vector<std::int64_t> sums(box_.size(), 0);
   for (const Step& step : added_)
@@ -48,17 +47,10 @@ void FlowField::update(double elapsed, Communicator& communicator) {
 }
 
 void FlowField::grow_to(const NodeLattice::Box& box) {
-  NodeLattice::Box grown = box;
-  if (box_.size() > 0)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      grown.low[axis] = std::min(box.low[axis], box_.low[axis]);
-      grown.high[axis] = std::max(box.high[axis], box_.high[axis]);
-    }
-  if (grown.low == box_.low && grown.high == box_.high) return;
-  std::vector<double> carried(grown.size(), 0.0);
-  box_.visit([&](const NodeLattice::Node& node, std::size_t k) { carried[grown.place(node)] = carried_[k]; });
+  const NodeLattice::Box grown = box_.united(box);
+  if (grown == box_) return;
+  carried_ = box_.values_in(grown, carried_, 0.0);
   box_ = grown;
-  carried_ = std::move(carried);
   find_volumes();
 }
 

@@ -7,6 +7,7 @@
 
 #include "spot/base/elementary.hpp"
 #include "spot/base/errors.hpp"
+#include "spot/base/memory.hpp"
 
 namespace spot {
 
@@ -25,74 +26,47 @@ FreeSurface::FreeSurface(const SpotParameters& parameters, const Container& cont
       radius_(parameters.radius),
       beta_(parameters.surface_exponent),
       margin_(parameters.radius + parameters.step_height),
-      origin_(container.outlets()[0].centre),
-      lowest_(container.outlets().height()) {
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    width_[axis] = width_of_column * diameter;
-    const auto i = static_cast<int>(axis);
-    const Periodic& periodic = container.periodic();
-    if (!periodic.along(i)) continue;
-    const double columns = std::max(1.0, std::floor(periodic.length(i) / width_[axis]));
-    width_[axis] = periodic.length(i) / columns;
-    period_[axis] = static_cast<int>(columns);
-  }
+      lattice_(container, width_of_column * diameter),
+      lowest_(container.outlets().height()) {}
+
+void FreeSurface::clear() {
+  box_ = {};
+  heights_.clear();
 }
 
-/// In columns from the first outlet's centre, which is the axis of one.
-double FreeSurface::place_of(const Vector3& place, std::size_t axis) const {
-  const auto i = static_cast<int>(axis);
-  return (place[i] - origin_[i]) / width_[axis];
-}
-
-bool FreeSurface::covered(const Column& column) const {
-  return !heights_.empty() && column[0] >= low_[0] && column[0] < high_[0] && column[1] >= low_[1] &&
-         column[1] < high_[1];
-}
-
-std::size_t FreeSurface::at(const Column& column) const {
-  return static_cast<std::size_t>(column[1] - low_[1]) * static_cast<std::size_t>(high_[0] - low_[0]) +
-         static_cast<std::size_t>(column[0] - low_[0]);
-}
-
-/// Covers all columns from low to high, exclusive, besides those that are covered.
-void FreeSurface::cover(const Column& low, const Column& high) {
-  const Column old_low = low_, old_high = high_;
-  const std::vector<double> old = std::move(heights_);
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    low_[axis] = old.empty() ? low[axis] : std::min(low[axis], old_low[axis]);
-    high_[axis] = old.empty() ? high[axis] : std::max(high[axis], old_high[axis]);
-  }
-  heights_.assign(static_cast<std::size_t>(high_[0] - low_[0]) * static_cast<std::size_t>(high_[1] - low_[1]), none);
-  std::size_t k = 0;
-  if (!old.empty())
-    for (int y = old_low[1]; y < old_high[1]; ++y)
-      for (int x = old_low[0]; x < old_high[0]; ++x) heights_[at({x, y})] = old[k++];
+/// That around a place.
+NodeLattice::Node FreeSurface::column(const Vector3& place) const {
+  NodeLattice::Node column = {0, 0, 0};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    column[axis] = static_cast<int>(std::floor(lattice_.cell_of(place, axis) + 0.5));
+  return lattice_.wrapped(column);
 }
 
 void FreeSurface::add(const Vector3& grain) {
-  Column column;
-  const Vector3 place = container_->periodic().wrap(grain);
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    column[axis] = static_cast<int>(std::floor(place_of(place, axis) + 0.5));
-    if (period_[axis] != 0) column[axis] = (column[axis] % period_[axis] + period_[axis]) % period_[axis];
-  }
-  if (!covered(column)) cover(column, {column[0] + 1, column[1] + 1});
-  double& height = heights_[at(column)];
+  const NodeLattice::Node column = this->column(container_->periodic().wrap(grain));
+  if (!box_.contains(column)) cover({column, {column[0] + 1, column[1] + 1, 1}});
+  double& height = heights_[box_.place(column)];
   height = std::max(height, grain.z());
+}
+
+void FreeSurface::cover(const NodeLattice::Box& box) {
+  const NodeLattice::Box grown = box_.united(box);
+  heights_ = box_.values_in(grown, heights_, none);
+  box_ = grown;
 }
 
 void FreeSurface::gather(Communicator& communicator) {
   constexpr double far = std::numeric_limits<double>::infinity();
   std::vector<double> ends(4, far);  // least columns, and those of mirrored axes
-  if (!heights_.empty())
+  if (box_.size() > 0)
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      ends[axis] = low_[axis];
-      ends[2 + axis] = -high_[axis];
+      ends[axis] = box_.low[axis];
+      ends[2 + axis] = -box_.high[axis];
     }
   ends = communicator.least(ends);
   if (ends[0] == far) return;  // nowhere is a grain
-  cover({static_cast<int>(ends[0]), static_cast<int>(ends[1])},
-        {static_cast<int>(-ends[2]), static_cast<int>(-ends[3])});
+  cover({{static_cast<int>(ends[0]), static_cast<int>(ends[1]), 0},
+         {static_cast<int>(-ends[2]), static_cast<int>(-ends[3]), 1}});
   std::vector<double> depths;
   for (const double height : heights_) depths.push_back(-height);
   depths = communicator.least(depths);
@@ -105,22 +79,22 @@ void FreeSurface::find_lowest() {
 }
 
 /// Beyond the last column it is as over that.
-double FreeSurface::height_over(Column column) const {
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    if (period_[axis] != 0) column[axis] = (column[axis] % period_[axis] + period_[axis]) % period_[axis];
-    column[axis] = std::clamp(column[axis], low_[axis], high_[axis] - 1);
-  }
-  return heights_[at(column)];
+double FreeSurface::height_over(NodeLattice::Node column) const {
+  column = lattice_.wrapped(column);
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    column[axis] = std::clamp(column[axis], box_.low[axis], box_.high[axis] - 1);
+  return heights_[box_.place(column)];
 }
 
 double FreeSurface::height(const Vector3& place) const {
   if (heights_.empty()) return container_->outlets().height();
-  const double x = place_of(place, 0), y = place_of(place, 1), low_x = std::floor(x), low_y = std::floor(y);
-  const Column column = {static_cast<int>(low_x), static_cast<int>(low_y)};
-  const auto along_x = [&](int row) {
-    return (1.0 - (x - low_x)) * height_over({column[0], row}) + (x - low_x) * height_over({column[0] + 1, row});
+  const double x = lattice_.cell_of(place, 0), y = lattice_.cell_of(place, 1);
+  const double low_x = std::floor(x), low_y = std::floor(y);
+  const int first = static_cast<int>(low_x), row = static_cast<int>(low_y);
+  const auto along_x = [&](int in_row) {
+    return (1.0 - (x - low_x)) * height_over({first, in_row, 0}) + (x - low_x) * height_over({first + 1, in_row, 0});
   };
-  return (1.0 - (y - low_y)) * along_x(column[1]) + (y - low_y) * along_x(column[1] + 1);
+  return (1.0 - (y - low_y)) * along_x(row) + (y - low_y) * along_x(row + 1);
 }
 
 std::size_t FreeSurface::choose(const std::vector<Vector3>& middles, double uniform) const {
@@ -142,21 +116,23 @@ std::size_t FreeSurface::choose(const std::vector<Vector3>& middles, double unif
   return last;
 }
 
+void FreeSurface::replace_container(const Container& container) {
+  container_ = &container;
+  lattice_.replace_container(container);
+}
+
 void FreeSurface::save(Bytes& bytes) const {
-  append(bytes, low_);
-  append(bytes, high_);
+  append(bytes, box_);
   append(bytes, heights_);
 }
 
 void FreeSurface::restore(ByteReader& saved) {
-  low_ = saved.take<Column>();
-  high_ = saved.take<Column>();
+  box_ = take_box(saved);
   heights_ = saved.take_all<double>();
-  const std::int64_t columns = (std::int64_t{high_[0]} - low_[0]) * (std::int64_t{high_[1]} - low_[1]);
-  if (!heights_.empty() &&
-      (columns <= 0 || high_[0] <= low_[0] || static_cast<std::size_t>(columns) != heights_.size()))
-    throw InvalidState("the saved heights of the surface are damaged");
+  if (heights_.size() != box_.size()) throw InvalidState("the saved heights of the surface are damaged");
   find_lowest();
 }
+
+std::size_t FreeSurface::memory() const { return bytes_in(heights_) + lattice_.memory(); }
 
 }  // namespace spot

@@ -132,6 +132,24 @@ std::size_t NodeLattice::Box::place(const Node& node) const {
   return place;
 }
 
+NodeLattice::Box NodeLattice::Box::united(const Box& other) const {
+  if (size() == 0) return other;
+  if (other.size() == 0) return *this;
+  Box both;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    both.low[axis] = std::min(low[axis], other.low[axis]);
+    both.high[axis] = std::max(high[axis], other.high[axis]);
+  }
+  return both;
+}
+
+std::vector<double> NodeLattice::Box::values_in(const Box& larger, const std::vector<double>& values,
+                                                double otherwise) const {
+  std::vector<double> all(larger.size(), otherwise);
+  visit([&](const Node& node, std::size_t k) { all[larger.place(node)] = values[k]; });
+  return all;
+}
+
 NodeLattice::Box take_box(ByteReader& saved) {
   NodeLattice::Box box;
   box.low = saved.take<NodeLattice::Node>();

@@ -44,8 +44,8 @@ class Drainage {
   /// The same, told what all grains are now. On one rank only.
   void replace_grains(const std::vector<Grain>& grains);
 
-  /// Goes on with other walls; grains that are outside them are found by require_inside(). Throws InvalidContainer unless
-  /// there are as many outlets as before.
+  /// Goes on with other walls; grains that are outside them are found by require_inside(). Throws InvalidContainer
+  /// unless there are as many outlets as before.
   void replace_container(std::shared_ptr<const Container> container);
 
   /// Goes on with another number of threads, where the driver has any. Throws InvalidParameter as Workers does.
@@ -104,6 +104,7 @@ class Drainage {
   const GrainChecks& checks() const { return checks_; }
   const Container& container() const { return *container_; }
   double diameter() const { return diameter_; }
+  /// What spots call to see where grains are.
   Spots::VisitGrains visit_positions() const {
     return [this](const auto& visit) { visit_grains([&visit](const Grain& grain) { visit(grain.position); }); };
   }
@@ -114,7 +115,9 @@ class Drainage {
     ++counters_.moves;
     counters_.volume_moved += enclosed;
   }
-  void count_volume_left(std::int64_t parts) { counters_.volume_left += parts; }
+  /// The weight of a move that encloses this grain volume (1024 = grain_volume): by its fixed volume, if it has one,
+  /// and by what its spot carries, which changes. For each move once, in the order of a spot's moves.
+  double weigh(const Move& move, int enclosed, Spots& spots);
   void count_sweep(std::size_t grains) {
     ++counters_.sweeps;
     counters_.grains_swept += static_cast<std::int64_t>(grains);

@@ -46,7 +46,6 @@ class TimeOrderedDrainage : public Drainage {
   void take_new_container() override;
   void let_settle(TiledPacking& packing, bool everybody);
   void carry_out(Move move);
-  void weigh(Move& move);
   bool relaxes_around(const Move& move) const;
   /// As in 2006. The other schedules are there to see what comes of less, and may let the packing collapse.
   bool relaxes_every_move() const {

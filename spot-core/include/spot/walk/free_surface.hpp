@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "spot/geometry/container.hpp"
 #include "spot/parallel/communicator.hpp"
 #include "spot/walk/influence_profile.hpp"
+#include "spot/walk/node_lattice.hpp"
 #include "spot/walk/parameters.hpp"
 
 namespace spot {
@@ -30,7 +30,7 @@ class FreeSurface {
   bool steers() const { return beta_ > 0.0; }
 
   /// Forgets all grains.
-  void clear() { heights_.clear(); }
+  void clear();
   void add(const Vector3& grain);
   /// Collective. After all ranks have added their grains.
   void gather(Communicator& communicator);
@@ -41,34 +41,29 @@ class FreeSurface {
   /// are equally likely where all or none of the influence is below the surface.
   std::size_t choose(const std::vector<Vector3>& middles, double uniform) const;
 
-  /// Can the surface matter for a spot that steps from here to there or less far? If not, all steps are alike.
+  /// May a step from here reach above the surface? If not, all steps are alike.
   bool is_near(const Vector3& place) const { return place.z() + margin_ > lowest_; }
 
-  void replace_container(const Container& container) { container_ = &container; }
+  void replace_container(const Container& container);
 
   void save(Bytes& bytes) const;
   /// Throws InvalidState if what save() appended is damaged.
   void restore(ByteReader& saved);
 
-  std::size_t memory() const { return heights_.capacity() * sizeof(double); }
+  std::size_t memory() const;
 
  private:
-  using Column = std::array<int, 2>;
-  double place_of(const Vector3& place, std::size_t axis) const;
-  bool covered(const Column& column) const;
-  std::size_t at(const Column& column) const;
-  void cover(const Column& low, const Column& high);
-  double height_over(Column column) const;
+  NodeLattice::Node column(const Vector3& place) const;
+  void cover(const NodeLattice::Box& box);
+  double height_over(NodeLattice::Node column) const;
   void find_lowest();
 
   const Container* container_;
   const InfluenceProfile* profile_;
   double radius_, beta_, margin_;
-  Vector3 origin_;
-  std::array<double, 2> width_;
-  Column period_ = {0, 0};               // in columns; 0 where nothing repeats
-  Column low_ = {0, 0}, high_ = {0, 0};  // columns covered: from low_ to high_, exclusive
-  std::vector<double> heights_;          // over these
+  NodeLattice lattice_;          // of columns: its nodes at height 0 are their axes
+  NodeLattice::Box box_;         // of the columns that are known
+  std::vector<double> heights_;  // over these
   double lowest_;
 };
 

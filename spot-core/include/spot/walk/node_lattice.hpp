@@ -32,6 +32,11 @@ class NodeLattice {
 
   std::array<Corner, 8> corners(const Vector3& point) const;
   const Vector3& spacing() const { return spacing_; }
+  /// Where it is along an axis, in spacings from the node at 0.
+  double cell_of(const Vector3& point, std::size_t axis) const {
+    const auto i = static_cast<int>(axis);
+    return (point[i] - origin_[i]) / spacing_[i];
+  }
   /// Its image in the cell.
   Node wrapped(Node node) const;
 
@@ -50,6 +55,11 @@ class NodeLattice {
     bool contains(const Node& node) const;
     std::size_t size() const;
     std::size_t place(const Node& node) const;
+    bool operator==(const Box& other) const { return low == other.low && high == other.high; }
+    /// The least box around both, of which one may be empty.
+    Box united(const Box& other) const;
+    /// Values at the nodes of this box as those of a larger one, which has `otherwise` at the others.
+    std::vector<double> values_in(const Box& larger, const std::vector<double>& values, double otherwise) const;
     /// Calls visit(node, place) for all of them.
     template <typename Visit>
     void visit(const Visit& visit) const {
@@ -68,12 +78,6 @@ class NodeLattice {
   std::size_t memory() const { return volumes_.size() * sizeof(std::pair<const Node, double>); }
 
  private:
-  /// Where it is along an axis, in spacings.
-  double cell_of(const Vector3& point, std::size_t axis) const {
-    const auto i = static_cast<int>(axis);
-    return (point[i] - origin_[i]) / spacing_[i];
-  }
-
   const Container* container_;
   Vector3 origin_, spacing_;
   Node period_ = {0, 0, 0};                 // in nodes; 0 where nothing repeats
