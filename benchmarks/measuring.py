@@ -35,6 +35,7 @@ from spot_analysis.statistics import neighbours, packing, radial_distribution, r
 from spot_analysis.statistics.counts import FLUX_HEIGHTS  # noqa: E402
 from spot_analysis.statistics.interval import Interval  # noqa: E402
 from spot_analysis.statistics.interval_view import IntervalView  # noqa: E402
+from spot_analysis.statistics.snapshot import TIME_TOLERANCE  # noqa: E402
 
 DIAMETER, GRAVITY = 0.003, 9.81  # m, m/s2: of all decks
 TAU = math.sqrt(DIAMETER / GRAVITY)  # s
@@ -310,7 +311,7 @@ class Reference:
         """IntervalView over the snapshots in ``interval`` (tau), or over the two nearest."""
         times = self.run.times
         apart = np.abs(times - times.clip(*interval))
-        kept = times[apart <= max(np.sort(apart)[1], run_statistics.TIME_TOLERANCE)]
+        kept = times[apart <= max(np.sort(apart)[1], TIME_TOLERANCE)]
         return IntervalView(self.run, np.arange(len(times)), Interval(kept[0], kept[-1], "chosen"))
 
     def rest(self):
