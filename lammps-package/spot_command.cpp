@@ -211,6 +211,11 @@ const std::map<std::string, Reader>& readers() {
       {"shear", [](SpotCommand& c, Words& w) { c.spots.shear_length = w.not_negative("the shear length"); }},
       {"surface",
        [](SpotCommand& c, Words& w) { c.spots.surface_exponent = w.not_negative("the exponent of the surface"); }},
+      {"nonaffine",
+       [](SpotCommand& c, Words& w) {
+         c.spots.nonaffine = w.not_negative("non-affine motion");
+         c.spots.nonaffine_length = w.positive("the length of non-affine motion");
+       }},
       {"threads", [](SpotCommand& c, Words& w) { c.threads = to_int(w.integer("the number of threads", 1)); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,
@@ -322,6 +327,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"dilatancy", precise(spots.dilatancy)},
           {"shear", precise(spots.shear_length)},
           {"surface", precise(spots.surface_exponent)},
+          {"nonaffine", precise(spots.nonaffine, ' ', spots.nonaffine_length)},
           {"injection", precise(spots.injection_rate.largest())},
           {"volume", precise(spots.fixed_volume)},
           {"steps", spots.together ? "together" : "poisson"},

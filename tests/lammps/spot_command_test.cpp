@@ -51,7 +51,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
       "accuracy fast momentum 0.3 contact 2e-3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 "
-      "critical 0.58 1.5 dilatancy 0.1 shear 2.5 surface 3 peratom yes");
+      "critical 0.58 1.5 dilatancy 0.1 shear 2.5 surface 3 nonaffine 0.14 0.5 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -67,6 +67,8 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.spots.dilatancy, 0.1);
   EXPECT_EQ(c.spots.shear_length, 2.5);
   EXPECT_EQ(c.spots.surface_exponent, 3.0);
+  EXPECT_EQ(c.spots.nonaffine, 0.14);
+  EXPECT_EQ(c.spots.nonaffine_length, 0.5);
   EXPECT_EQ(c.spots.speed, 2.0);
   EXPECT_EQ(c.spots.injection_rate.largest(), 300.0);
   EXPECT_EQ(c.spots.seed, 17U);
@@ -231,7 +233,7 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
                     HasSubstr("'every', 'chance', 'spot' and 'global'")));
   for (const std::string keyword :
        {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads", "momentum", "contact",
-        "volume", "critical", "critical 0.58", "dilatancy", "shear", "surface"})
+        "volume", "critical", "critical 0.58", "dilatancy", "shear", "surface", "nonaffine", "nonaffine 0.1"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -260,6 +262,10 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   EXPECT_THAT(error_of(complete + "shear -1"), AllOf(HasSubstr("'shear' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "surface -1"), AllOf(HasSubstr("'surface' is -1"), HasSubstr("zero or positive")));
   EXPECT_THROW(resolved("surface 33").spots.validate(), InvalidParameter);
+  EXPECT_THAT(error_of(complete + "nonaffine -0.1 1"),
+              AllOf(HasSubstr("'nonaffine' is -0.1"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "nonaffine 0.1 0"), AllOf(HasSubstr("'nonaffine' is 0"), HasSubstr("be positive")));
+  EXPECT_THROW(resolved("nonaffine 0.6 1").spots.validate(), InvalidParameter);
   EXPECT_THAT(error_of(complete + "alpha 0"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(complete + "volume inf"), HasSubstr("'inf' is not a finite number"));
   // What the parser cannot know is refused by who uses it.
@@ -331,7 +337,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "spot",      "global",      "silo",
                                                "peratom",   "yes",         "no",
                                                "critical",  "dilatancy",   "shear",
-                                               "surface"};
+                                               "surface",   "nonaffine"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -442,6 +448,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"dilatancy", in(c.spots.dilatancy, "")},
       {"shear", in(c.spots.shear_length, "")},
       {"surface", in(c.spots.surface_exponent, "")},
+      {"nonaffine", in(c.spots.nonaffine, "")},
       {"steps", c.spots.together ? "together" : "poisson"},
       {"threads", std::to_string(c.threads)},
       {"outlet", *c.outlet == c.orifice->centre.z() ? "the height of the orifice" : "elsewhere"},

@@ -69,6 +69,7 @@ def test_missing_keyword(tmp_path, keyword):
     ("volume 77 critical 0.3 1", ["critical packing fraction is 0.3 ", "0 (off) or from 0.5 to 0.7"]),
     ("volume 77 critical 0.58 1e-3 dz 0.4", ["exchange length is 0.001 ", "at least 0.1 of the spots' step height, 0.4"]),
     ("critical 0.58 1", ["critical packing fraction is 0.58 ", "spots carry no fixed volume"]),
+    ("nonaffine 0.6 1", ["non-affine motion is 0.6 ", "from 0 (off) to 0.5"]),
     ("dilatancy -1", ["'dilatancy' is -1", "zero or positive"]),
     ("volume 77 dilatancy 0.1", ["dilatancy is 0.1 ", "needs a critical packing fraction"]),
     ("shear -1", ["'shear' is -1", "zero or positive"]),

@@ -46,7 +46,7 @@ def come_and_go(folder, ranks):
 
 
 # With what spots leave behind, and shear: spots climb to where they do so in the silo's 10 d.
-INGREDIENTS = ALL + " profile uniform radius 2 volume 37 critical 0.56 1 dilatancy 0.1 shear 2"
+INGREDIENTS = ALL + " profile uniform radius 2 volume 37 critical 0.56 1 dilatancy 0.1 shear 2 nonaffine 0.1 0.5"
 
 
 # By name: what leaves grains.dump in the folder.

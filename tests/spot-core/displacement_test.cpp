@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes.hpp"
+#include "spot/walk/nonaffine_motion.hpp"
 
 namespace {
 
@@ -77,6 +78,33 @@ TEST(DisplacementUnit, WeightMultipliesTheInfluence) {
   EXPECT_NEAR(packing.grains()[0].position.x(), -1.5 * 2.5e-3 * 0.68, 2.0 * packing.quantum().length());
 }
 
+/// Both components of the move that grains have in common are as without, and each goes its own way beside.
+TEST(DisplacementUnit, GrainsGoAgainstTheirNeighboursByWhatIsTheirOwn) {
+  spot::SpotParameters spots{2.6, 2.5e-3};
+  const Move move{0.0, 0, {0.0, 0.0, 0.0}, {0.68, 0.0, 0.8}};
+  const auto moved = [&] {
+    Packing packing = listed(row);
+    spot::displace(packing, scenes::all_movable(packing), move, spots);
+    return packing.grains();
+  };
+  const auto straight = moved();
+  spots.nonaffine = 0.2;
+  spots.nonaffine_length = 0.5;
+  const auto tilted = moved();
+  const spot::NonaffineMotion motion(spots);
+  int inside = 0;
+  for (std::size_t i = 0; i < straight.size(); ++i) {
+    spot::NonaffineMotion::Tilt tilt{};
+    motion.update(tilt, row[i].id, row[i].position.z());
+    const bool reached = row[i].position.norm() <= 2.6;
+    inside += reached ? 1 : 0;
+    const spot::Vector3 own = 2.5e-3 * 0.8 * motion.unit() * spot::Vector3(tilt.x, tilt.y, tilt.z);
+    const spot::Vector3 expected = straight[i].position + (reached ? own : spot::Vector3(0.0, 0.0, 0.0));
+    EXPECT_LT((tilted[i].position - expected).norm(), 1e-6) << straight[i].id;
+  }
+  EXPECT_EQ(inside, 2);
+}
+
 TEST(FixedVolumeUnit, WeightIsOneWithoutAFixedVolume) {
   const spot::SpotParameters spots = scenes::paper_spots();
   ASSERT_EQ(spots.fixed_volume, 0.0);
@@ -93,6 +121,22 @@ TEST(FixedVolumeAnalytic, WeightTimesGrainsIsTheVolume) {
   // At the surface, where a spot has less to carry its volume, grains are not thrown about.
   for (const int grains : {0, 1, 5, 19})
     EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains * spot::grain_volume), 3.85, 1e-6);
+}
+
+/// One that has taken volume up carries that, too, but no move throws grains farther than 2010's.
+TEST(FixedVolumeAnalytic, WeightGoesWithWhatTheSpotCarriesUpToThatOfTwentyGrains) {
+  spot::SpotParameters spots = scenes::paper_spots();
+  for (const double volume : {0.25, 1.0, 2.0})
+    EXPECT_EQ(spot::fixed_volume_weight(spots, 3.0, 80 * spot::grain_volume, volume), volume);
+  spots.fixed_volume = 77.0;
+  for (const double volume : {0.25, 1.0, 2.0}) {
+    for (const int grains : {40, 77, 300})
+      EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains * spot::grain_volume, volume) * grains, 77.0 * volume,
+                  1e-6);
+    for (const int grains : {0, 1, 4})
+      EXPECT_NEAR(spot::fixed_volume_weight(spots, 3.0, grains * spot::grain_volume, volume), 3.85, 1e-6);
+  }
+  EXPECT_EQ(spot::largest_weight(spots), 3.85);
 }
 
 TEST(FixedVolumeAnalytic, VolumeIsThatOfThePartAboveTheOutlet) {

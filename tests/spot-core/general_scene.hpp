@@ -114,6 +114,10 @@ class GeneralScene {
     if (draws.below(2) == 0) relaxation_.contact_overlap = 1e-3;
     if (draws.below(2) == 0) spots_.shear_length = d * draws.uniform(0.5, 5.0);
     if (draws.below(2) == 0) spots_.surface_exponent = draws.uniform(0.5, 6.0);
+    if (draws.below(2) == 0) {
+      spots_.nonaffine = draws.uniform(0.05, 0.5);
+      spots_.nonaffine_length = d * draws.uniform(0.05, 2.0);
+    }
     if (draws.below(2) == 0 && spots_.fixed_volume > 0.0) {
       spots_.critical_fraction = draws.uniform(0.5, 0.7);
       spots_.exchange_length = spots_.step_height * draws.uniform(0.2, 5.0);
@@ -161,12 +165,13 @@ class GeneralScene {
 
   /// For whoever has to find out what went wrong.
   std::string description() const {
-    return spot::message(
-        "scene ", seed_, ": ", grains_.size(), equal_ ? " equal" : " unequal", " grains, d = ", diameter_,
-        repeats_x_ ? ", repeats along x" : "", repeats_y_ ? ", repeats along y" : "",
-        ", R_s = ", spots_.radius / diameter_, ", w = ", spots_.influence, ", volume ", spots_.fixed_volume,
-        ", dilation ", spots_.dilation, ", phi_c = ", spots_.critical_fraction, ", l = ", spots_.exchange_length,
-        ", a = ", spots_.dilatancy, ", L = ", spots_.shear_length, ", beta = ", spots_.surface_exponent);
+    return spot::message("scene ", seed_, ": ", grains_.size(), equal_ ? " equal" : " unequal",
+                         " grains, d = ", diameter_, repeats_x_ ? ", repeats along x" : "",
+                         repeats_y_ ? ", repeats along y" : "", ", R_s = ", spots_.radius / diameter_,
+                         ", w = ", spots_.influence, ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation,
+                         ", phi_c = ", spots_.critical_fraction, ", l = ", spots_.exchange_length,
+                         ", a = ", spots_.dilatancy, ", L = ", spots_.shear_length,
+                         ", beta = ", spots_.surface_exponent, ", S = ", spots_.nonaffine);
   }
 
  private:

@@ -97,6 +97,55 @@ TEST(KernelsInvariance, DisplacementIsTheSameInEveryBuild) {
   }
 }
 
+std::vector<spot::kernels::Tilt> tilts_of(std::size_t n, std::uint64_t seed) {
+  scenes::Draws draws(seed);
+  const auto draw = [&] { return static_cast<std::int16_t>(static_cast<int>(draws.below(65535)) - 32767); };
+  std::vector<spot::kernels::Tilt> tilts;
+  for (std::size_t i = 0; i < n; ++i) tilts.push_back({draw(), draw(), draw(), draw()});
+  return tilts;
+}
+
+TEST(KernelsInvariance, TiltedDisplacementIsTheSameInEveryBuild) {
+  const Point by = {5701234, -840032, 1003, 0};
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto start = points_in_box(400, 6.0, seed);
+    const auto tilts = tilts_of(start.size(), seed);
+    const Point middle = point_at({3, 3, 3});
+    const spot::Reach reach = seed % 2 == 0 ? uniform : parabolic;
+    auto plain = start;
+    base.displace_tilted(plain.data(), tilts.data(), plain.size(), middle, reach, by, 3.7f);
+    for (const Kernels* build : spot::kernels::runnable()) {
+      auto points = start;
+      build->displace_tilted(points.data(), tilts.data(), 0, middle, reach, by, 3.7f);
+      expect_same(points, start, *build);
+      build->displace_tilted(points.data(), tilts.data(), points.size(), middle, reach, by, 3.7f);
+      expect_same(points, plain, *build);
+    }
+    // Nobody's own way: as without.
+    base.displace_tilted(plain.data(), tilts.data(), plain.size(), middle, reach, {0, 0, 0, 0}, 0.0f);
+    auto tilted = start, straight = start;
+    base.displace_tilted(tilted.data(), tilts.data(), start.size(), middle, reach, by, 0.0f);
+    base.displace(straight.data(), start.size(), middle, reach, by);
+    expect_same(tilted, straight, base);
+  }
+}
+
+/// A grain in the middle of a uniform move has all of it and of what its tilt adds.
+TEST(KernelsAnalytic, ATiltAddsToTheMove) {
+  for (const Kernels* build : spot::kernels::runnable()) {
+    std::vector<Point> points(spot::kernels::lanes, Point{0, 0, 0, Point::free});
+    std::vector<spot::kernels::Tilt> tilts(points.size(), spot::kernels::Tilt{100, -200, 400, 77});
+    build->displace_tilted(points.data(), tilts.data(), points.size(), {0, 0, 0, Point::free}, uniform,
+                           {10, 20, -3000, 0}, 0.5f);
+    for (const Point& point : points) {
+      EXPECT_EQ(point.x, 10 + 50);
+      EXPECT_EQ(point.y, 20 - 100);
+      EXPECT_EQ(point.z, -3000 + 200);
+      EXPECT_EQ(point.state, Point::free);
+    }
+  }
+}
+
 /// Single precision decides who is inside only where it is as good as undecided.
 TEST(KernelsUnit, DisplacementMovesFreePointsInsideTheSphere) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {

@@ -171,6 +171,26 @@ TEST(ParametersUnit, DilatancyIsNotNegativeAndLowersACriticalPackingFraction) {
   EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("dilatancy is 0.1 "), HasSubstr("needs a critical packing fraction")));
 }
 
+TEST(ParametersUnit, NonaffineMotionIsUpToHalfTheFallAndHasALength) {
+  SpotParameters spots = scenes::paper_spots();
+  EXPECT_EQ(spots.nonaffine, 0.0);
+  spots.nonaffine_length = 0.5;
+  for (const double good : {0.0, 0.14, 0.5}) {
+    spots.nonaffine = good;
+    EXPECT_NO_THROW(spots.validate());
+  }
+  for (const double bad : {-0.1, 0.501, 1.0, infinity, -infinity, std::nan("")}) {
+    spots.nonaffine = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("non-affine motion is "), HasSubstr("from 0 (off) to 0.5")));
+  }
+  spots.nonaffine = 0.1;
+  for (const double bad : {0.0, -0.5, infinity, std::nan("")}) {
+    spots.nonaffine_length = bad;
+    EXPECT_THAT(refusal_of(spots),
+                AllOf(HasSubstr("length of non-affine motion is "), HasSubstr("must be positive and finite")));
+  }
+}
+
 TEST(ParametersUnit, ShearLengthIsNotNegative) {
   SpotParameters spots = scenes::paper_spots();
   for (const double good : {0.0, 2.0, 1e300}) {

@@ -12,6 +12,7 @@
 #include "spot/geometry/container.hpp"
 #include "spot/packing/displacement.hpp"
 #include "spot/packing/packing.hpp"
+#include "spot/walk/nonaffine_motion.hpp"
 #include "spot/walk/parameters.hpp"
 
 namespace scenes {
@@ -51,13 +52,25 @@ class PlainPacking {
     return sum;
   }
 
+  /// At the start of a window, where grains go against their neighbours.
+  void draw_tilts(const spot::SpotParameters& spots) {
+    const spot::NonaffineMotion motion(spots);
+    for (Body& body : bodies_) {
+      body.tilt = {};
+      if (motion.on()) motion.update(body.tilt, body.id, position(body).z());
+    }
+  }
+
   void displace(const spot::Move& move, const spot::SpotParameters& spots) {
     const Place by = quanta(-spots.influence * move.weight * move.step);
     for (Body& body : bodies_) {
       if (within(body, move, spots)) ++received[body.id];
       const float part = share(body, move, spots);
+      const float unit = static_cast<float>(spot::NonaffineMotion(spots).unit()) * static_cast<float>(std::abs(by[2]));
+      const std::array<std::int16_t, 3> tilt = {body.tilt.x, body.tilt.y, body.tilt.z};
       for (std::size_t axis = 0; axis < 3; ++axis)
-        body.at[axis] += static_cast<std::int64_t>(part * static_cast<float>(by[axis]));
+        body.at[axis] +=
+            static_cast<std::int64_t>(part * (static_cast<float>(by[axis]) + unit * static_cast<float>(tilt[axis])));
     }
   }
 
@@ -109,6 +122,7 @@ class PlainPacking {
     Place at, last;
     double radius;
     bool swept = false;
+    spot::NonaffineMotion::Tilt tilt{};
   };
 
   float squared_distance(const Body& body, const spot::Move& move) const {

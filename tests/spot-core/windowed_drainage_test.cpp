@@ -100,12 +100,13 @@ class PlainWindows {
       while (live.spot.next_step <= until && !live.out)
         moves_of_window_.emplace_back(walk_.step(live.spot, {*silo_, flow_, surface_}), &live);
     }
+    packing_.draw_tilts(spots_);
     // All are weighed before the first is carried out.
     for (auto& [move, live] : moves_of_window_) {
       const int shares = packing_.shares(move, spots_);
       ++moves;
       volume_moved += shares;
-      move.weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet, shares) * live->spot.volume;
+      move.weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet, shares, live->spot.volume);
       flow_.add(move, live->spot.volume);
       if (critical_.on())
         live->spot.volume = critical_.volume_after(live->spot.volume, move, shares, flow_.shear(move.middle), *silo_);
@@ -150,7 +151,7 @@ struct Spots {
   bool together;
   bool parabolic = false;
   double dilation = 0.0;
-  double critical_fraction = 0.0, dilatancy = 0.0, shear_length = 0.0, surface_exponent = 0.0;
+  double critical_fraction = 0.0, dilatancy = 0.0, shear_length = 0.0, surface_exponent = 0.0, nonaffine = 0.0;
 };
 
 class WindowedDrainageBruteForce : public testing::TestWithParam<Spots> {};
@@ -167,6 +168,8 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   spots.dilatancy = GetParam().dilatancy;
   spots.shear_length = GetParam().shear_length;
   spots.surface_exponent = GetParam().surface_exponent;
+  spots.nonaffine = GetParam().nonaffine;
+  spots.nonaffine_length = 0.05;
   if (GetParam().parabolic) spots.profile = spot::InfluenceProfile::parabolic;
   RelaxationParameters never;
   never.tolerance = 1e6;
@@ -197,6 +200,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
                                          Spots{"CriticalState", 77.0, false, true, 0.0, 0.6},
                                          Spots{"Dilatancy", 77.0, false, true, 0.03, 0.6, 0.1},
                                          Spots{"Shear", 0.0, false, false, 0.0, 0.0, 0.0, 2.0},
+                                         Spots{"Nonaffine", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2},
                                          Spots{"Surface", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 3.0},
                                          Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 2.0, 3.0}),
                          [](const auto& spots) { return spots.param.name; });

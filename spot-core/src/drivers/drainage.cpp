@@ -7,6 +7,7 @@
 
 #include "spot/base/errors.hpp"
 #include "spot/packing/displacement.hpp"
+#include "spot/walk/nonaffine_motion.hpp"
 
 namespace spot {
 
@@ -39,7 +40,8 @@ void require_steps(const SpotParameters& spots, double diameter) {
                                    " births while a spot climbs one diameter, but at most ", most_births,
                                    " are allowed"));
   const double step = std::sqrt(spots.step_width * spots.step_width + spots.step_height * spots.step_height);
-  const double displacement = spots.influence * largest_weight(spots) * (step / diameter);
+  const double displacement =
+      spots.influence * largest_weight(spots) * (1.0 + NonaffineMotion::largest(spots.nonaffine)) * (step / diameter);
   if (!(displacement <= longest_displacement))
     throw InvalidParameter(message("a step of a spot displaces grains by up to ", displacement,
                                    " diameters, but at most ", longest_displacement,
@@ -72,7 +74,7 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
 double Drainage::weigh(const Move& move, int enclosed, Spots& spots) {
   const Spots::Carried carried = spots.carry(move, enclosed, container());
   counters_.volume_left += carried.left;
-  return fixed_volume_weight(spots_, move.middle.z() - limits().outlet, enclosed) * carried.volume;
+  return fixed_volume_weight(spots_, move.middle.z() - limits().outlet, enclosed, carried.volume);
 }
 
 std::vector<Grain> Drainage::grains() const {

@@ -68,7 +68,13 @@ double WindowedDrainage::moves_between_sweeps_for(const SpotParameters& spots, d
   const double in_a_row = (1.0 + spots.persistence) / (1.0 - spots.persistence);
   const double difference =
       displacement * displacement * in_a_row * spots.profile->mean_square_difference(diameter / spots.radius);
-  return std::max(0.1, 3.0 * tolerance * tolerance * diameter * diameter / difference);
+  // Two neighbours that go ways of their own (NonaffineMotion) go on and on: n such moves make n times the difference.
+  const double own = spots.nonaffine * spots.influence * spots.step_height;
+  const double own_difference = 6.0 * own * own * spots.profile->mean_square_share();
+  // The n of which the difference + n of the own difference is this:
+  const double most = 3.0 * tolerance * tolerance * diameter * diameter / difference;
+  const double moves = 2.0 * most / (1.0 + std::sqrt(1.0 + 4.0 * own_difference / difference * most));
+  return std::max(0.1, moves);
 }
 
 double WindowedDrainage::positive_window(double window) {

@@ -66,7 +66,13 @@ const std::vector<int>& BlockMoves::find(const std::vector<Move>& moves, const S
   middles_.clear();
   for (const Move& move : moves) middles_.push_back(cells_.lattice().wrapped(move.middle - cells_.lattice().low()));
   set_parts(workers.size());
-  workers.run([&](int worker) { find(parts_[static_cast<std::size_t>(worker)], moves, spots.radius); });
+  const NonaffineMotion motion(spots);
+  if (motion.on()) cells_.give_tilts();
+  workers.run([&](int worker) {
+    Part& part = parts_[static_cast<std::size_t>(worker)];
+    find(part, moves, spots.radius);
+    if (motion.on()) update_tilts(part, motion);
+  });
   for (std::size_t layer = 0; layer < work.size(); ++layer) work[layer] += cells_reached_[layer];
   enclosed_.assign(moves.size(), 0);
   for (const Part& part : parts_)
@@ -131,9 +137,30 @@ void BlockMoves::find(Part& part, const std::vector<Move>& moves, double radius)
   }
 }
 
+/// Of all grains between the first and the last cell that moves may reach: there are hardly any that they don't.
+void BlockMoves::update_tilts(const Part& part, const NonaffineMotion& motion) {
+  if (part.rows.empty()) return;
+  std::uint32_t first = part.rows.front().first, last = part.rows.front().last;
+  for (const CellRow& row : part.rows) {
+    first = std::min(first, row.first);
+    last = std::max(last, row.last);
+  }
+  for (std::uint32_t cell = first; cell < last; ++cell)
+    cells_.visit(cell, cell + 1, [&](std::uint32_t slot) {
+      motion.update(cells_.tilts[slot], cells_.ids[slot], cells_.position(slot).z());
+    });
+}
+
 void BlockMoves::weigh(const std::vector<Move>& moves, const SpotParameters& spots) {
+  const NonaffineMotion motion(spots);
+  tilt_unit_ = static_cast<float>(motion.unit());
   steps_.clear();
-  for (const Move& move : moves) steps_.push_back(cells_.lattice().wrapped(-spots.influence * move.weight * move.step));
+  lengths_.clear();
+  for (const Move& move : moves) {
+    const Point step = cells_.lattice().wrapped(-spots.influence * move.weight * move.step);
+    steps_.push_back(step);
+    lengths_.push_back(length_of(step) + static_cast<std::int32_t>(std::ceil(motion.largest() * std::abs(step.z))));
+  }
 }
 
 // ---- how far grains may be from their references
@@ -161,7 +188,7 @@ void BlockMoves::add_drift(Part& part, std::size_t first, std::int32_t limit) {
   part.must_rebuild = false;
   part.counted = first;
   while (part.counted < middles_.size() && !part.must_rebuild) {
-    const std::int32_t length = length_of(steps_[part.counted]);
+    const std::int32_t length = lengths_[part.counted];
     part.visit_cells(part.counted++, [&](std::uint32_t cell) {
       cells_.drift[cell] += length;
       part.must_rebuild |= cells_.drift[cell] > limit;
@@ -182,8 +209,7 @@ void BlockMoves::apply(std::size_t first, std::size_t end, Workers& workers, Mov
 /// The drift that was added for moves beyond the end is taken back.
 void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool count) {
   for (; part.counted > end; --part.counted)
-    part.visit_cells(part.counted - 1,
-                     [&](std::uint32_t cell) { cells_.drift[cell] -= length_of(steps_[part.counted - 1]); });
+    part.visit_cells(part.counted - 1, [&](std::uint32_t cell) { cells_.drift[cell] -= lengths_[part.counted - 1]; });
   std::vector<std::uint32_t> found;
   for (std::size_t m = first; m < end; ++m) {
     part.visit_cells(m, [&](std::uint32_t cell) {
@@ -193,9 +219,19 @@ void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool coun
       const std::uint32_t slot = cells_.first_slot(part.rows[r].first), n = cells_.first_slot(part.rows[r].last) - slot;
       const Point middle = part.shifts.empty() ? middles_[m] : this->middle(part, m, r);
       if (count) count_received(slot, n, middle, found);
-      kernels_.displace(cells_.points.data() + slot, n, middle, reach_, steps_[m]);
+      displace(slot, n, middle, m);
     }
   }
+}
+
+void BlockMoves::displace(std::uint32_t first, std::uint32_t n, const Point& middle, std::size_t move) {
+  Point* points = cells_.points.data() + first;
+  const Point& step = steps_[move];
+  if (cells_.tilted())
+    kernels_.displace_tilted(points, cells_.tilts.data() + first, n, middle, reach_, step,
+                             tilt_unit_ * static_cast<float>(std::abs(step.z)));
+  else
+    kernels_.displace(points, n, middle, reach_, step);
 }
 
 /// Counts a move for the grains that it is about to move, of n slots.
@@ -209,7 +245,7 @@ void BlockMoves::count_received(std::uint32_t first, std::uint32_t n, const Poin
 }
 
 std::size_t BlockMoves::memory() const {
-  std::size_t bytes = bytes_in(parts_, cells_reached_, middles_, steps_, enclosed_, received_);
+  std::size_t bytes = bytes_in(lengths_, parts_, cells_reached_, middles_, steps_, enclosed_, received_);
   for (const Part& part : parts_) bytes += bytes_in(part.rows, part.shifts, part.end_of_rows, part.enclosed);
   return bytes;
 }

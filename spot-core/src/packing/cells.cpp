@@ -22,6 +22,8 @@ void require_countable(double slots, std::uint32_t cells) {
                                  ": the packing has collapsed, or is too large"));
 }
 
+constexpr NonaffineMotion::Tilt no_tilt = {0, 0, 0, 0};
+
 }  // namespace
 
 void Cells::hold(const Slabs& slabs, int rank) {
@@ -34,6 +36,7 @@ void Cells::hold(const Slabs& slabs, int rank) {
   points.assign(slots, nobody);
   references.assign(slots, nobody);
   corrections.assign(slots, {0, 0, 0, 0});
+  if (tilted_) tilts.assign(slots, no_tilt);
   ids.assign(slots, -1);
   if (unequal_) sizes.assign(slots, size_of(0.5 * lattice().diameter()));
   unrelaxed.assign(n, 0);
@@ -55,6 +58,12 @@ void Cells::allow_unequal() {
   if (unequal_) return;
   unequal_ = true;
   sizes.assign(slots(), size_of(0.5 * lattice().diameter()));
+}
+
+void Cells::give_tilts() {
+  if (tilted_) return;
+  tilted_ = true;
+  tilts.assign(slots(), no_tilt);
 }
 
 // ---- slots
@@ -95,6 +104,7 @@ void Cells::give_room(std::uint32_t cell) {
   spread(points, nobody);
   spread(references, nobody);
   spread(corrections, Point{0, 0, 0, 0});
+  if (tilted_) spread(tilts, no_tilt);
   spread(ids, std::int64_t{-1});
   if (unequal_) spread(sizes, size_of(0.5 * lattice().diameter()));
   first_slot_ = std::move(first);
@@ -109,11 +119,17 @@ void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, cons
   points[slot] = point;
   references[slot] = reference;
   corrections[slot] = {0, 0, 0, 0};
+  if (tilted_) tilts[slot] = no_tilt;
   if (unequal_) sizes[slot] = size_of(radius);
   note_change(slot);
   if (!own(cell_of(slot))) return;
   ++size_;
   if (point.state != Point::free && point.state != Point::held) in_motion.push_back(place_of(slot));
+}
+
+void Cells::follow(std::uint32_t slot, std::uint32_t from) {
+  corrections[slot] = corrections[from];
+  if (tilted_) tilts[slot] = tilts[from];
 }
 
 void Cells::vacate(std::uint32_t slot) {
@@ -149,8 +165,8 @@ std::vector<std::int64_t> Cells::grains_in_own_layers() const {
 }
 
 std::size_t Cells::memory() const {
-  return bytes_in(points, references, corrections, ids, sizes, unrelaxed, drift, in_motion, first_slot_, cell_of_,
-                  changed_[0], changed_[1], changed_in_images_);
+  return bytes_in(points, references, corrections, tilts, ids, sizes, unrelaxed, drift, in_motion, first_slot_,
+                  cell_of_, changed_[0], changed_[1], changed_in_images_);
 }
 
 }  // namespace spot

@@ -2,21 +2,22 @@
 #include "spot/packing/displacement.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "spot/walk/calibration.hpp"
+#include "spot/walk/nonaffine_motion.hpp"
 
 namespace spot {
 
 double largest_weight(const SpotParameters& parameters) {
-  const double volume = parameters.critical_fraction > 0.0 ? calibration::most_volume : 1.0;
-  return std::max(1.0, parameters.fixed_volume * volume / calibration::least_enclosed);
+  return std::max(1.0, parameters.fixed_volume / calibration::least_enclosed);
 }
 
-double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed) {
-  if (parameters.fixed_volume == 0.0) return 1.0;
+double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed, double volume) {
+  if (parameters.fixed_volume == 0.0) return volume;
   const double part = parameters.profile->part_above(height / parameters.radius);
   const double grains = static_cast<double>(enclosed) / grain_volume;
-  return parameters.fixed_volume * part / std::max(grains, calibration::least_enclosed * part + 1e-9);
+  return parameters.fixed_volume * volume * part / std::max(grains, calibration::least_enclosed * volume * part + 1e-9);
 }
 
 namespace {
@@ -41,12 +42,19 @@ int displace(Packing& packing, const std::vector<std::uint32_t>& grains, const M
              MovesReceived* received) {
   const Quantum& quantum = packing.quantum();
   const Vector3 whole = -spots.influence * move.weight * move.step;
+  const NonaffineMotion motion(spots);
+  const double unit = motion.unit() * std::abs(whole.z());
   int enclosed = 0;
   for (const std::uint32_t i : grains) {
     const double squared = packing.distance_squared(i, move.middle);
     if (squared > spots.radius * spots.radius) continue;
     const double share = spots.profile->share(squared, spots.radius);
-    const Vector3 by = share * whole;
+    Vector3 by = share * whole;
+    if (motion.on()) {
+      NonaffineMotion::Tilt tilt{};
+      motion.update(tilt, packing.id(i), packing.z()[i]);
+      by += share * unit * Vector3(tilt.x, tilt.y, tilt.z);
+    }
     packing.move(i, quantum.round(by.x()), quantum.round(by.y()), quantum.round(by.z()));
     if (received) ++(*received)[packing.id(i)];
     enclosed += volume_of(packing.volume(i), share);

@@ -18,6 +18,7 @@ struct Migrant {
   Cell cell;
   Point point, correction;
   double radius;
+  NonaffineMotion::Tilt tilt;
 };
 
 /// What has become of a slot in a layer that another rank holds a copy of.
@@ -41,7 +42,8 @@ GhostLayers::GhostLayers(Cells& cells, NeighbourLists& lists, std::shared_ptr<Co
 
 void GhostLayers::emigrate(std::uint32_t slot, const Cell& to) {
   append(migrants_[to.z < cells_.first_own_layer() ? below : above],
-         Migrant{cells_.ids[slot], to, cells_.points[slot], cells_.corrections[slot], cells_.radius(slot)});
+         Migrant{cells_.ids[slot], to, cells_.points[slot], cells_.corrections[slot], cells_.radius(slot),
+                 cells_.tilted() ? cells_.tilts[slot] : NonaffineMotion::Tilt{0, 0, 0, 0}});
   lists_.unlist(slot);
   cells_.vacate(slot);
 }
@@ -61,6 +63,7 @@ void GhostLayers::exchange_migrants(const Container& container) {
       const std::uint32_t at = cells_.slot(place);
       cells_.occupy(at, migrant.id, migrant.point, migrant.point, migrant.radius);
       cells_.corrections[at] = migrant.correction;
+      if (cells_.tilted()) cells_.tilts[at] = migrant.tilt;
       lists_.list(at, container);
     }
 }

@@ -5,8 +5,11 @@
 #include <cstdint>
 
 #include "spot/packing/point.hpp"
+#include "spot/walk/nonaffine_motion.hpp"
 
 namespace spot::kernels {
+
+using Tilt = NonaffineMotion::Tilt;
 
 /// Kernels work on whole packs of points: numbers of points given to them, except grains to be pushed, are multiples of
 /// this, and neighbour lists have room for a multiple of `lanes`.
@@ -48,6 +51,10 @@ struct Kernels {
 
   /// Adds to every point its share of `by`, cut to whole quanta.
   void (*displace)(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by);
+
+  /// The same with a tilt for each point: its share of `by` + `unit` tilt.
+  void (*displace_tilted)(Point* points, const Tilt* tilts, std::size_t n, const Point& middle, const Reach& reach,
+                          const Point& by, float unit);
 
   /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
   /// the line of centres for r < d, each component cut to whole quanta; the pair's share if the neighbour is swept, the

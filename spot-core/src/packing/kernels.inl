@@ -12,6 +12,7 @@ using spot::Point;
 using spot::Reach;
 using spot::kernels::ahead;
 using spot::kernels::Lists;
+using spot::kernels::Tilt;
 
 /// Of a whole share.
 constexpr float parts = spot::grain_volume;
@@ -110,6 +111,17 @@ void displace(Point* points, std::size_t n, const Point& middle, const Reach& re
     const float part = share(points[i], middle, reach);
     add(points[i], static_cast<std::int32_t>(part * x), static_cast<std::int32_t>(part * y),
         static_cast<std::int32_t>(part * z));
+  }
+}
+
+void displace_tilted(Point* points, const Tilt* tilts, std::size_t n, const Point& middle, const Reach& reach,
+                     const Point& by, float unit) {
+  const float x = static_cast<float>(by.x), y = static_cast<float>(by.y), z = static_cast<float>(by.z);
+  for (std::size_t i = 0; i < n; ++i) {
+    const float part = share(points[i], middle, reach);
+    const Tilt& tilt = tilts[i];
+    add(points[i], static_cast<std::int32_t>(part * (x + unit * tilt.x)),
+        static_cast<std::int32_t>(part * (y + unit * tilt.y)), static_cast<std::int32_t>(part * (z + unit * tilt.z)));
   }
 }
 
@@ -213,6 +225,7 @@ constexpr std::uint32_t width = 16;
 typedef std::int32_t Pack __attribute__((vector_size(64)));
 typedef std::int32_t Unaligned __attribute__((vector_size(64), aligned(4), may_alias));
 typedef float Floats __attribute__((vector_size(64)));
+typedef std::int16_t Shorts __attribute__((vector_size(32)));
 
 inline Pack join(Half a, Half b) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -261,6 +274,7 @@ constexpr std::uint32_t width = 8;
 typedef Half Pack;
 typedef std::int32_t Unaligned __attribute__((vector_size(32), aligned(4), may_alias));
 typedef float Floats __attribute__((vector_size(32)));
+typedef std::int16_t Shorts __attribute__((vector_size(16)));
 
 inline Pack load_for_transpose(const Point* points, const std::uint32_t* list, int k) {
   return join(load_point(points[list[k]]), load_point(points[list[k + 4]]));
@@ -283,6 +297,11 @@ constexpr Pack numbers = {0, 1, 2, 3, 4, 5, 6, 7};
 constexpr std::uint32_t points_in_pack = width / 4;
 
 inline Pack load(const void* from) { return *static_cast<const Unaligned*>(from); }
+inline Pack load_tilts(const Tilt* from) {
+  Shorts tilts;
+  __builtin_memcpy(&tilts, from, sizeof tilts);
+  return __builtin_convertvector(tilts, Pack);
+}
 inline void store(Pack p, void* to) { *static_cast<Unaligned*>(to) = p; }
 inline Pack all(std::int32_t value) { return Pack{} + value; }
 inline Floats all(float value) { return Floats{} + value; }
@@ -318,6 +337,18 @@ void displace(Point* points, std::size_t n, const Point& middle, const Reach& re
   for (std::size_t i = 0; i < n; i += points_in_pack) {
     const Pack p = load(points + i);
     store(p + whole(step * shares(p, centre, radius_squared, per_square)), points + i);
+  }
+}
+
+void displace_tilted(Point* points, const Tilt* tilts, std::size_t n, const Point& middle, const Reach& reach,
+                     const Point& by, float unit) {
+  const Pack centre = repeat(load_point(middle)), has_tilt = repeat(Quarter{-1, -1, -1, 0});
+  const Floats step = floats(repeat(load_point(by)));
+  const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square), units = all(unit);
+  for (std::size_t i = 0; i < n; i += points_in_pack) {
+    const Pack p = load(points + i);
+    const Floats tilt = floats(load_tilts(tilts + i) & has_tilt);
+    store(p + whole((step + units * tilt) * shares(p, centre, radius_squared, per_square)), points + i);
   }
 }
 
@@ -416,6 +447,7 @@ extern const Kernels SPOT_KERNELS;
 const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET,
                               &enclosed_volume,
                               &displace,
+                              &displace_tilted,
                               &push_off_neighbours,
                               &enclosed_volume_of_unequal,
                               &push_off_unequal_neighbours,

@@ -169,7 +169,7 @@ void TiledPacking::move_reference(Place place) {
     const Place to = cells_.ensure_room(number);
     const std::uint32_t old = cells_.slot(place), slot = cells_.slot(to);
     cells_.occupy(slot, cells_.ids[old], cells_.points[old], cells_.points[old], cells_.radius(old));
-    cells_.corrections[slot] = cells_.corrections[old];
+    cells_.follow(slot, old);
     lists_.rename(old, slot);
     cells_.vacate(old);
     place = to;

@@ -16,6 +16,7 @@ class Uniform final : public InfluenceProfile {
   double share(double, double) const override { return 1.0; }
   double gradient(double, double) const override { return 0.0; }
   double mean_share() const override { return 1.0; }
+  double mean_square_share() const override { return 1.0; }
   /// One of the two is as likely as not to be inside.
   double mean_square_difference(double) const override { return 0.25; }
   /// In quanta: whoever is inside by one or more moves all the way.
@@ -36,6 +37,7 @@ class Parabolic final : public InfluenceProfile {
   }
   double gradient(double distance, double radius) const override { return -2.0 * distance / (radius * radius); }
   double mean_share() const override { return 0.4; }
+  double mean_square_share() const override { return 8.0 / 35.0; }
   /// 4 d^2 <r^2> <cos^2> / R_s^4 with <r^2> = 3 R_s^2 / 5 and <cos^2> = 1/3.
   double mean_square_difference(double diameter) const override { return 0.8 * diameter * diameter; }
   ClippedParabola clipped_parabola(double radius) const override { return {radius * radius, 1.0 / (radius * radius)}; }

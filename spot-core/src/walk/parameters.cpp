@@ -48,6 +48,7 @@ void SpotParameters::validate() const {
   if (!(surface_exponent >= 0.0 && surface_exponent <= calibration::largest_surface_exponent))
     throw InvalidParameter(message("surface exponent is ", surface_exponent, " but must be from 0 (off) to ",
                                    calibration::largest_surface_exponent));
+  validate_nonaffine_motion();
   if (dilation > 0.0 && together)
     throw InvalidParameter(message("spot dilation is ", dilation, " but must be 0 for spots that step together"));
   require_positive("spot step width", step_width);
@@ -78,6 +79,13 @@ void SpotParameters::validate_critical_state() const {
   if (fixed_volume == 0.0)
     throw InvalidParameter(message("critical packing fraction is ", critical_fraction,
                                    " but spots carry no fixed volume, of which they could leave some"));
+}
+
+void SpotParameters::validate_nonaffine_motion() const {
+  if (!(nonaffine >= 0.0 && nonaffine <= calibration::largest_nonaffine))
+    throw InvalidParameter(message("non-affine motion is ", nonaffine, " of the fall but must be from 0 (off) to ",
+                                   calibration::largest_nonaffine));
+  if (nonaffine > 0.0) require_positive("length of non-affine motion", nonaffine_length);
 }
 
 double step_width_for(double diffusion_length, double step_height, double persistence) {

@@ -10,6 +10,7 @@
 #include "spot/parallel/communicator.hpp"
 #include "spot/parallel/workers.hpp"
 #include "spot/walk/move.hpp"
+#include "spot/walk/nonaffine_motion.hpp"
 #include "spot/walk/parameters.hpp"
 
 namespace spot {
@@ -76,8 +77,10 @@ class BlockMoves {
   void find_rows_of_images(Part& part, const Vector3& middle, double reach) const;
   Point middle(const Part& part, std::size_t move, std::size_t row) const;
   void find(Part& part, const std::vector<Move>& moves, double radius);
+  void update_tilts(const Part& part, const NonaffineMotion& motion);
   void add_drift(Part& part, std::size_t first, std::int32_t limit);
   void apply(Part& part, std::size_t first, std::size_t end, bool count);
+  void displace(std::uint32_t first, std::uint32_t n, const Point& middle, std::size_t move);
   void count_received(std::uint32_t first, std::uint32_t n, const Point& middle, std::vector<std::uint32_t>& found);
 
   Cells& cells_;
@@ -85,6 +88,8 @@ class BlockMoves {
   std::vector<Part> parts_;                  // one for each worker
   std::vector<std::int64_t> cells_reached_;  // by the moves of a window, in each own layer, and 1
   std::vector<Point> middles_, steps_;
+  std::vector<std::int32_t> lengths_;  // of the displacements, at most, in quanta
+  float tilt_unit_ = 0.0f;             // NonaffineMotion::unit()
   Reach reach_{};
   std::vector<int> enclosed_;            // volume of own grains, by each move
   std::vector<std::uint32_t> received_;  // moves of the grain in each slot, where they are counted

@@ -11,6 +11,7 @@
 #include "spot/packing/grain.hpp"
 #include "spot/packing/held_cells.hpp"
 #include "spot/packing/point.hpp"
+#include "spot/walk/nonaffine_motion.hpp"
 
 namespace spot {
 
@@ -56,6 +57,11 @@ class Cells : public HeldCells {
     return (radius(a) + radius(b)) / lattice().quantum().length();
   }
 
+  // Tilts, where grains go against their neighbours (NonaffineMotion).
+  /// Grains have tilts from now on, none of which has been drawn.
+  void give_tilts();
+  bool tilted() const { return tilted_; }
+
   // Slots.
   std::uint32_t slots() const { return first_slot_.back(); }
   std::uint32_t first_slot(std::uint32_t cell) const { return first_slot_[cell]; }
@@ -100,6 +106,9 @@ class Cells : public HeldCells {
   /// The same in any cells that there may be images of.
   std::vector<Place> take_changes_seen_in_images() { return std::exchange(changed_in_images_, {}); }
 
+  /// Takes over what goes with a grain, besides what occupy() does, from another slot.
+  void follow(std::uint32_t slot, std::uint32_t from);
+
   /// Grains owned.
   std::size_t size() const { return size_; }
   Vector3 from_low(const Point& point, std::uint32_t cell) const {
@@ -113,6 +122,7 @@ class Cells : public HeldCells {
 
   // Of every slot.
   AlignedVector<Point> points, references, corrections;  ///< `corrections`: the last, as far as a solver carries it on
+  AlignedVector<NonaffineMotion::Tilt> tilts;            ///< if they have any; as of the start of a window
   std::vector<std::int64_t> ids;                         ///< -1 in empty slots
   std::vector<GrainSize> sizes;                          ///< if they are unequal
   // Of every cell.
@@ -134,7 +144,7 @@ class Cells : public HeldCells {
   std::array<std::vector<Place>, 2> changed_;
   std::vector<Place> changed_in_images_;
   std::size_t size_ = 0;
-  bool unequal_ = false;
+  bool unequal_ = false, tilted_ = false;
 };
 
 }  // namespace spot

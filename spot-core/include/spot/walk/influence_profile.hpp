@@ -49,6 +49,9 @@ class InfluenceProfile {
   /// Of a grain anywhere within R_s, on average.
   virtual double mean_share() const = 0;
 
+  /// Its mean square.
+  virtual double mean_square_share() const = 0;
+
   /// Of two grains in touch anywhere within R_s, the mean square of the difference of their shares. `diameter` over
   /// R_s.
   virtual double mean_square_difference(double diameter) const = 0;

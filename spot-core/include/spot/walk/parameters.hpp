@@ -41,7 +41,11 @@ struct SpotParameters {
   /// beta: near the free surface, how much rather spots go where it is higher (2010's rule, FreeSurface). 0: they do
   /// not care (2006).
   double surface_exponent = 0.0;
-  bool together = false;  ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
+  /// S: how much grains go against their neighbours, for what a move carries them down (NonaffineMotion). 0: they go
+  /// the way of the spot (2006).
+  double nonaffine = 0.0;
+  double nonaffine_length = 0.0;  ///< l: of the fall in which a grain goes the same way (length)
+  bool together = false;          ///< all spots step at the same times, every dz / v_s (2010's fixed time step)
   std::uint64_t seed = 1;
 
   /// Steps per time of a spot, v_s / dz; the waiting times are exponential, unless spots step together.
@@ -71,6 +75,7 @@ struct SpotParameters {
 
  private:
   void validate_critical_state() const;
+  void validate_nonaffine_motion() const;
 };
 
 /// dx that gives a diffusion length b_s with steps of height dz and persistence p: dx^2 = 4 b_s dz (1 - p) / (1 + p).
