@@ -98,6 +98,9 @@ class Drainage {
   /// deeply.
   void require_valid_start();
 
+  /// Collective. InvalidParameter, if the packing is looser than the state that spots would bring it to.
+  void require_dense_start(Communicator& communicator) const;
+
   const SpotParameters& spot_parameters() const { return spots_; }
   const RelaxationParameters& relaxation_parameters() const { return relaxation_; }
   const DrainageLimits& limits() const { return checks_.limits(); }
