@@ -16,6 +16,7 @@
 #include "plain_packing.hpp"
 #include "scenes.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
+#include "spot/walk/calibration.hpp"
 
 namespace {
 

@@ -59,7 +59,7 @@ void add_parameters(std::vector<Case>& cases) {
              [](Scene& s, double v) { s.spots.injection_rate *= v; });
   add_values(cases, "dilation c_0", {0, 1e-6, 1e-3, 0.01, 0.03, 0.1, 0.9},
              [](Scene& s, double v) { s.spots.dilation = v; });
-  add_values(cases, "critical phi_c", {0.49, 0.5, 0.55, 0.59, 0.602, 0.7, 0.71},
+  add_values(cases, "critical phi_c", {0.49, 0.5, 0.54, 0.55, 0.602, 0.7, 0.71},
              [](Scene& s, double v) { s.spots.critical_fraction = v; });
   add_values(cases, "critical 0 0.5 dilatancy 0", {0}, [](Scene& s, double v) {
     s.spots.critical_fraction = v;
@@ -121,6 +121,7 @@ Scene scene_with_doubles(int every, double largest_overlap) {
     if (centre.head<2>().norm() < 3.0 && centre.z() < 6.0)
       scene.grains.push_back({static_cast<std::int64_t>(10000 + i), centre});
   }
+  scene.spots.critical_fraction = scene.spots.dilatancy = 0.0;  // it is too loose for any
   scene.largest_overlap = largest_overlap;
   scene.placed_by_hand = true;
   return scene;
@@ -220,7 +221,7 @@ void add_combinations(std::vector<Case>& cases, int number) {
     scene.time_ordered = k % 3 == 0;
     scene.set_radius(log_uniform(0.6, 6.0));
     scene.set_step_height(log_uniform(0.005, 0.5));
-    scene.spots.critical_fraction = draws.uniform(0.5, 0.6);
+    scene.spots.critical_fraction = draws.uniform(0.5, 0.55);
     scene.spots.exchange_length = scene.spots.step_height * log_uniform(0.1, 100.0);
     scene.spots.dilatancy = draws.below(2) == 0 ? 0.0 : scene.spots.radius * log_uniform(1e-3, 0.34);
     if (draws.below(2) == 0) scene.set_no_fixed_volume();
