@@ -271,8 +271,10 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   // What the parser cannot know is refused by who uses it.
   EXPECT_EQ(parse(complete + "threads 99999999999").threads, 1 << 30);
   EXPECT_THROW(resolved("momentum 1").relaxation.validate(), InvalidParameter);
-  for (const std::string more : {"volume 0 critical 0.58 1", "volume 77 critical 0.4 1", "volume 77 critical 0.58 0.01",
-                                 "volume 77 dilatancy 0.1", "volume 77 critical 0 1 dilatancy 0.1"})
+  for (const std::string more :
+       {"volume 0 critical 0.58 1", "volume 77 critical 0.4 1", "volume 77 critical 0.58 0.01",
+        "volume 77 dilatancy 0.1", "volume 77 critical 0 1 dilatancy 0.1", "volume 77 critical 0.58 1 dilatancy 1.2",
+        "volume 77 critical 0.58 1 dilatancy 1e300"})
     EXPECT_THROW(resolved(more).spots.validate(), InvalidParameter) << more;
   EXPECT_NO_THROW(resolved("volume 77 critical 0.58 1 dilatancy 0.1 shear 2").spots.validate());
 }

@@ -72,6 +72,7 @@ def test_missing_keyword(tmp_path, keyword):
     ("nonaffine 0.6 1", ["non-affine motion is 0.6 ", "from 0 (off) to 0.5"]),
     ("dilatancy -1", ["'dilatancy' is -1", "zero or positive"]),
     ("volume 77 dilatancy 0.1", ["dilatancy is 0.1 ", "needs a critical packing fraction"]),
+    ("volume 77 critical 0.5 1 dilatancy 1.2", ["dilatancy is 1.2 ", "at most a third of the spot radius"]),
     ("shear -1", ["'shear' is -1", "zero or positive"]),
     ("shear 2d", ["'2d' is not a finite number", "'shear'"]),
     ("steps apart", ["'steps apart' is not known", "'poisson' or 'together'"]),

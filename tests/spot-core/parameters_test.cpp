@@ -157,7 +157,7 @@ TEST(ParametersUnit, ACriticalStateNeedsAFixedVolume) {
 
 TEST(ParametersUnit, DilatancyIsNotNegativeAndLowersACriticalPackingFraction) {
   SpotParameters spots = critical_spots();
-  for (const double good : {0.0, 0.1, 1e300}) {
+  for (const double good : {0.0, 0.1, 0.333 * spots.radius}) {
     spots.dilatancy = good;
     EXPECT_NO_THROW(spots.validate());
     EXPECT_EQ(spots.shears(), good > 0.0);
@@ -165,6 +165,10 @@ TEST(ParametersUnit, DilatancyIsNotNegativeAndLowersACriticalPackingFraction) {
   for (const double bad : {-0.1, infinity, -infinity, std::nan("")}) {
     spots.dilatancy = bad;
     EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("dilatancy is "), HasSubstr("zero (off) or positive")));
+  }
+  for (const double bad : {0.334 * spots.radius, 1e300}) {
+    spots.dilatancy = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("dilatancy is "), HasSubstr("at most a third of the spot radius")));
   }
   spots = scenes::paper_spots();
   spots.dilatancy = 0.1;

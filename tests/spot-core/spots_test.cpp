@@ -544,6 +544,50 @@ TEST(SpotsInvariance, WhereNothingIsShearedWalksAreTheSame) {
   EXPECT_EQ(walks(5.0), walks(0.0));
 }
 
+/// Once in each interval, however the calls lie, and over a saved state.
+TEST(SpotsUnit, TheSurfaceIsFoundWheneverASpotHasClimbedAPartOfItsRadius) {
+  const auto space = space_above_orifice();
+  SpotParameters parameters = scenes::paper_spots();
+  parameters.surface_exponent = 3.0;
+  const double interval = spot::calibration::climb_between_surfaces * parameters.radius / parameters.speed;
+  spot::Alone alone;
+  for (const double window : {0.013 * interval, 0.1 * interval, 0.7 * interval, interval, 2.5 * interval}) {
+    Spots population(parameters, *space, 1.0), again(parameters, *space, 1.0);
+    for (int k = 0; k < 200; ++k) {
+      Spots& spots = k < 77 ? population : again;
+      bool asked = false;
+      spots.update_surface(
+          k * window, [&](const auto&) { asked = true; }, alone);
+      const double last = std::floor((k - 1) * window / interval + 1e-9),
+                   now = std::floor(k * window / interval + 1e-9);
+      EXPECT_EQ(asked, now > last) << "window " << k << " of " << window / interval;
+      if (k != 76) continue;
+      spot::Bytes bytes;
+      population.save(bytes);
+      spot::ByteReader reader(bytes);
+      again.restore(reader);
+    }
+  }
+  parameters.surface_exponent = 0.0;
+  Spots blind(parameters, *space, 1.0);
+  blind.update_surface(
+      0.0, [](const auto&) { ADD_FAILURE() << "nobody asks"; }, alone);
+}
+
+/// In the order of time, too, where five settings of relative speeds are an interval.
+TEST(SpotsUnit, InTheOrderOfTimeTheSurfaceIsFoundAsOften) {
+  const auto space = space_above_orifice();
+  SpotParameters parameters = scenes::paper_spots();
+  parameters.surface_exponent = 3.0;
+  parameters.injection_rate = 20.0;
+  const double interval = spot::calibration::climb_between_surfaces * parameters.radius / parameters.speed;
+  Spots population(parameters, *space, 1.0);
+  int asked = 0;
+  while (population.next_step(20.5 * interval, *space, [&](const auto&) { ++asked; })) {
+  }
+  EXPECT_EQ(asked, 21);
+}
+
 /// Its moves in their order: each in turn carries what that before has left over.
 TEST(SpotsUnit, ASpotCarriesWhatItHasNotLeft) {
   const auto space = space_above_orifice();

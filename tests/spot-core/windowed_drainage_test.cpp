@@ -16,6 +16,7 @@
 #include "plain_packing.hpp"
 #include "scenes.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
+#include "spot/walk/calibration.hpp"
 
 namespace {
 
@@ -93,9 +94,12 @@ class PlainWindows {
       live_.push_back({walk_.birth(born_, next_birth_, *silo_), false});
       set_speed(live_.back().spot, next_birth_);
     }
-    surface_.clear();
-    for (const Grain& grain : packing_.grains()) surface_.add(grain.position);
-    surface_.gather(alone);
+    if (const double interval = spot::calibration::climb_between_surfaces * spots_.radius / spots_.speed;
+        windows_ == 1 || std::floor(now / interval) > std::floor((now - window_) / interval)) {
+      surface_.clear();
+      for (const Grain& grain : packing_.grains()) surface_.add(grain.position);
+      surface_.gather(alone);
+    }
     for (Live& live : live_) {
       while (live.spot.next_step <= until && !live.out)
         moves_of_window_.emplace_back(walk_.step(live.spot, {*silo_, flow_, surface_}), &live);

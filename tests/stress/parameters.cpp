@@ -59,6 +59,20 @@ void add_parameters(std::vector<Case>& cases) {
              [](Scene& s, double v) { s.spots.injection_rate *= v; });
   add_values(cases, "dilation c_0", {0, 1e-6, 1e-3, 0.01, 0.03, 0.1, 0.9},
              [](Scene& s, double v) { s.spots.dilation = v; });
+  add_values(cases, "critical phi_c", {0.49, 0.5, 0.54, 0.55, 0.602, 0.7, 0.71},
+             [](Scene& s, double v) { s.spots.critical_fraction = v; });
+  add_values(cases, "critical 0 0.5 dilatancy 0", {0}, [](Scene& s, double v) {
+    s.spots.critical_fraction = v;
+    s.spots.dilatancy = v;
+  });
+  add_values(cases, "exchange length l / d", {0.01, 0.119, 0.12, 0.5, 5, 1e300},
+             [](Scene& s, double v) { s.spots.exchange_length = v; });
+  add_values(cases, "dilatancy a / d", {0, 1e-6, 0.15, 0.5, 1.176, 1.177, 10},
+             [](Scene& s, double v) { s.spots.dilatancy = v; });
+  add_values(cases, "shear L / d", {1e-6, 0.1, 2, 100, 1e6, 1e300},
+             [](Scene& s, double v) { s.spots.shear_length = v; });
+  add_values(cases, "surface beta", {0, 1e-6, 0.5, 3, 10, 32, 33},
+             [](Scene& s, double v) { s.spots.surface_exponent = v; });
 }
 
 /// What the time-ordered algorithm has not.
@@ -107,6 +121,7 @@ Scene scene_with_doubles(int every, double largest_overlap) {
     if (centre.head<2>().norm() < 3.0 && centre.z() < 6.0)
       scene.grains.push_back({static_cast<std::int64_t>(10000 + i), centre});
   }
+  scene.spots.critical_fraction = scene.spots.dilatancy = 0.0;  // it is too loose for any
   scene.largest_overlap = largest_overlap;
   scene.placed_by_hand = true;
   return scene;
@@ -117,7 +132,7 @@ Scene gap(double width, double radius) {
   scene.half_depth = 0.5 * width;
   scene.orifice = std::min(scene.half_depth, 4.0);
   scene.spots.radius = radius;
-  scene.spots.fixed_volume = 0.0;
+  scene.set_no_fixed_volume();
   scene.buffers = {0.0, 0.0};
   scene.grains.clear();
   for (int k = 0; k < 12; ++k)
@@ -172,6 +187,11 @@ void add_odd_numbers(std::vector<Case>& cases) {
       {"c_0", [](Scene& s, double v) { s.spots.dilation = v; }},
       {"nu_s", [](Scene& s, double v) { s.spots.injection_rate = v; }},
       {"volume", [](Scene& s, double v) { s.spots.fixed_volume = v; }},
+      {"phi_c", [](Scene& s, double v) { s.spots.critical_fraction = v; }},
+      {"l", [](Scene& s, double v) { s.spots.exchange_length = v; }},
+      {"a", [](Scene& s, double v) { s.spots.dilatancy = v; }},
+      {"L", [](Scene& s, double v) { s.spots.shear_length = v; }},
+      {"beta", [](Scene& s, double v) { s.spots.surface_exponent = v; }},
       {"alpha", [](Scene& s, double v) { s.relaxation.alpha = v; }},
       {"momentum", [](Scene& s, double v) { s.relaxation.momentum = v; }},
       {"contact", [](Scene& s, double v) { s.relaxation.contact_overlap = v; }},
@@ -200,8 +220,13 @@ void add_combinations(std::vector<Case>& cases, int number) {
     Scene scene;
     scene.time_ordered = k % 3 == 0;
     scene.set_radius(log_uniform(0.6, 6.0));
-    if (draws.below(2) == 0) scene.spots.fixed_volume = 0.0;
     scene.set_step_height(log_uniform(0.005, 0.5));
+    scene.spots.critical_fraction = draws.uniform(0.5, 0.55);
+    scene.spots.exchange_length = scene.spots.step_height * log_uniform(0.1, 100.0);
+    scene.spots.dilatancy = draws.below(2) == 0 ? 0.0 : scene.spots.radius * log_uniform(1e-3, 0.34);
+    if (draws.below(2) == 0) scene.set_no_fixed_volume();
+    scene.spots.shear_length = draws.below(2) == 0 ? 0.0 : log_uniform(0.01, 1e3);
+    scene.spots.surface_exponent = draws.below(2) == 0 ? 0.0 : log_uniform(0.01, 32.0);
     scene.spots.dilation = draws.below(2) == 0 ? 0.0 : log_uniform(1e-3, 0.5);
     scene.spots.influence = 2.5e-3 * log_uniform(0.1, 100.0);
     scene.spots.injection_rate = 368.0 * log_uniform(0.01, 100.0);
@@ -212,12 +237,15 @@ void add_combinations(std::vector<Case>& cases, int number) {
     const double moves = scene.time_ordered ? 2e4 : 4e5;
     scene.time =
         std::min(4.0, std::sqrt(2.0 * moves / (scene.spots.injection_rate.largest() * scene.spots.move_rate())));
-    cases.push_back({"all at once",
-                     spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ",
-                                   scene.spots.radius, ", dz ", scene.spots.step_height, ", nu_s ",
-                                   scene.spots.injection_rate.largest(), ", c_0 ", scene.spots.dilation, ", momentum ",
-                                   scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
-                     scene, true});
+    cases.push_back(
+        {"all at once",
+         spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ", scene.spots.radius,
+                       ", dz ", scene.spots.step_height, ", nu_s ", scene.spots.injection_rate.largest(), ", c_0 ",
+                       scene.spots.dilation, ", phi_c ", scene.spots.critical_fraction, ", l ",
+                       scene.spots.exchange_length, ", a ", scene.spots.dilatancy, ", L ", scene.spots.shear_length,
+                       ", beta ", scene.spots.surface_exponent, ", momentum ", scene.relaxation.momentum,
+                       ", tolerance ", scene.relaxation.tolerance),
+         scene, true});
   }
 }
 

@@ -14,7 +14,8 @@
 
 namespace stress {
 
-/// A silo with a packing, and all numbers of the model; by default those of the deck (examples/silo), in d and tau.
+/// A silo with a packing, and all numbers of the model; by default those of the deck (examples/silo), phi_c
+/// apart, in d and tau.
 struct Scene {
   Scene();
 
@@ -35,6 +36,8 @@ struct Scene {
 
   /// Another drift or step height, with the same diffusion length.
   void set_step_height(double height);
+  /// Spots that carry what they enclose, and so can leave nothing behind.
+  void set_no_fixed_volume();
   /// Another size of spots, with the volume and, if need be, the orifice and the silo that belong to it.
   void set_radius(double radius);
   /// A dense packing of this height.

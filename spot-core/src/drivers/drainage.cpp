@@ -7,7 +7,9 @@
 
 #include "spot/base/errors.hpp"
 #include "spot/packing/displacement.hpp"
+#include "spot/walk/calibration.hpp"
 #include "spot/walk/nonaffine_motion.hpp"
+#include "spot/walk/packing_at_rest.hpp"
 
 namespace spot {
 
@@ -150,6 +152,19 @@ void Drainage::require_valid_start() {
   });
   checks_.require_off_walls(in_wall, "at the start");
   checks_.require_shallow(largest_overlap(), "at the start");
+}
+
+void Drainage::require_dense_start(Communicator& communicator) const {
+  if (spots_.critical_fraction == 0.0) return;
+  std::vector<EnclosedGrain> grains;
+  visit_grains([&](const Grain& grain) {
+    grains.push_back({grain.position, volume_parts(diameter_, radius_in(diameter_, grain))});
+  });
+  const auto at_rest = packing_fraction_at_rest(spots_, container(), diameter_, grains, communicator);
+  if (!at_rest || spots_.critical_fraction <= (1.0 + calibration::most_above_rest) * *at_rest) return;
+  throw InvalidParameter(message("critical packing fraction is ", spots_.critical_fraction, " but must be at most ",
+                                 (1.0 + calibration::most_above_rest) * *at_rest, ": the packing at rest has ",
+                                 *at_rest));
 }
 
 }  // namespace spot

@@ -33,6 +33,8 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
   require_valid_start();
   TiledPacking tiled(packing_.diameter(), packing_.extent(), limits.outlet, packing_.grains(), Drainage::container());
   let_settle(tiled, true);
+  Alone alone;
+  require_dense_start(alone);
 }
 
 TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation,

@@ -100,6 +100,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
   require_fitting_window();
   require_valid_start();
   let_settle(true);
+  require_dense_start(*communicator_);
 }
 
 void WindowedDrainage::advance_to(double time) {
@@ -109,7 +110,7 @@ void WindowedDrainage::advance_to(double time) {
     const double now = static_cast<double>(windows_) * window_, until = static_cast<double>(++windows_) * window_;
     spots_.set_relative_speeds(now, *communicator_);
     spots_.give_birth(until, container(), [this](const Spot& spot) { return here(spot); });
-    spots_.update_surface(visit_positions(), *communicator_);
+    spots_.update_surface(now, visit_positions(), *communicator_);
     step_to(until);
     displace();
     remove_spots_above();

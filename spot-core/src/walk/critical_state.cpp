@@ -26,7 +26,7 @@ double CriticalState::enclosed(const Vector3& middle, double shear, const Contai
   container.contacts(container.periodic().wrap(middle), radius_ + inset_, walls);
   double part = 1.0;
   for (const WallContact& wall : walls) part *= profile_->part_above((wall.distance - inset_) / radius_);
-  return fraction_ * std::max(0.0, 1.0 - dilatancy_ * shear) * enclosed_by_grains_alone_ * part;
+  return fraction_ * (1.0 - dilatancy_ * shear) * enclosed_by_grains_alone_ * part;
 }
 
 double CriticalState::volume_after(double volume, const Move& move, int enclosed, double shear,

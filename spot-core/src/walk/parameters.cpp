@@ -67,6 +67,10 @@ void SpotParameters::validate_critical_state() const {
       throw InvalidParameter(message("dilatancy is ", dilatancy, " but needs a critical packing fraction to lower"));
     return;
   }
+  if (!(dilatancy <= calibration::largest_dilatancy * radius))
+    throw InvalidParameter(message("dilatancy is ", dilatancy, " but must be at most a third of the spot radius, ",
+                                   calibration::largest_dilatancy * radius,
+                                   ": more leaves no packing fraction where the flow is sheared most"));
   if (!(critical_fraction >= calibration::least_critical_fraction &&
         critical_fraction <= calibration::largest_critical_fraction))
     throw InvalidParameter(message("critical packing fraction is ", critical_fraction, " but must be 0 (off) or from ",

@@ -19,6 +19,7 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       shears_(parameters.shears()),
       flow_(parameters, container, diameter),
       surface_(parameters, container, diameter),
+      surface_interval_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
       setting_interval_(dilates_ || shears_ || surface_.steers()
                             ? calibration::climb_between_settings * parameters.radius / parameters.speed
                             : 0.0) {}
@@ -97,7 +98,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container, co
       Alone alone;
       set_relative_speeds(next_setting(), alone);
       if (settings_ > 0) update_flow(setting_interval_, alone);
-      update_surface(visit_grains, alone);
+      update_surface(next_setting(), visit_grains, alone);
       ++settings_;
     } else if (event <= time && event == next_birth_) {
       bear_next(container, [](const Spot&) { return true; });
@@ -139,8 +140,10 @@ void Spots::update_flow(double elapsed, Communicator& communicator) {
   if (shears_) flow_.update(elapsed, communicator);
 }
 
-void Spots::update_surface(const VisitGrains& visit_grains, Communicator& communicator) {
-  if (!surface_.steers()) return;
+void Spots::update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator) {
+  constexpr double rounded = 1.0 + 1e-12;  // times of calls are sums of shorter intervals
+  if (!surface_.steers() || now * rounded < static_cast<double>(surfaces_) * surface_interval_) return;
+  surfaces_ = static_cast<std::int64_t>(now * rounded / surface_interval_) + 1;
   surface_.clear();
   visit_grains([this](const Vector3& position) { surface_.add(position); });
   surface_.gather(communicator);
@@ -196,6 +199,7 @@ void Spots::save(Bytes& bytes) const {
   append(bytes, next_birth_);
   append(bytes, live());
   append(bytes, settings_);
+  append(bytes, surfaces_);
   dilation_.save(bytes);
   flow_.save(bytes);
   surface_.save(bytes);
@@ -206,6 +210,7 @@ void Spots::restore(ByteReader& saved) {
   next_birth_ = saved.take<double>();
   take_in(take_spots(saved));
   settings_ = saved.take<std::int64_t>();
+  surfaces_ = saved.take<std::int64_t>();
   dilation_.restore(saved);
   flow_.restore(saved);
   surface_.restore(saved);

@@ -97,6 +97,8 @@ class Drainage {
   /// Throws InvalidPacking, naming the grains, if one is outside the container, or overlaps a wall or another too
   /// deeply.
   void require_valid_start();
+  /// Collective. InvalidParameter, if the packing is looser than the state that spots would bring it to.
+  void require_dense_start(Communicator& communicator) const;
 
   const SpotParameters& spot_parameters() const { return spots_; }
   const RelaxationParameters& relaxation_parameters() const { return relaxation_; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <cstddef>
+
 /// Numbers of the spot model that were measured or chosen by what came out, and no parameters: each with its source.
 /// What goes with an influence profile is in InfluenceProfile::calibrated().
 namespace spot::calibration {
@@ -21,6 +23,11 @@ constexpr double slowest_relative_speed = 0.125, fastest_relative_speed = 4.0;
 /// far less than the spacing of the lattice on which spots are counted. Windows set them once each.
 constexpr double climb_between_settings = 0.1;
 
+/// The free surface is found anew whenever a spot at v_s has climbed this part of R_s. A choice: 0.7 tau with the
+/// fitted parameters, in which the surface of the example sinks by 0.1 d, where spots tell heights apart on the scale
+/// of R_s. In every window it took 3 to 4 % of a run, since it asks all grains.
+constexpr double climb_between_surfaces = 0.5;
+
 /// While a spot at v_s climbs so many R_s, what FlowField remembers of earlier steps falls by a factor of e: 14 tau
 /// with the fitted parameters. A choice: long enough for hundreds of steps at each node, short beside the time in which
 /// the flow of a silo changes its shape.
@@ -35,6 +42,19 @@ constexpr double least_critical_fraction = 0.5, largest_critical_fraction = 0.7;
 
 /// The least exchange length in steps: with shorter ones a step leaves more than there is too little.
 constexpr double least_exchange_in_steps = 0.1;
+
+/// By this share the critical packing fraction may be above that of the packing at rest: with the fitted parameters the
+/// mean over the fewest places is uncertain by so much. Beyond, spots take up volume everywhere, and compact what
+/// stands. Packings that DEM poured have 0.622 to 0.639 at rest, counted so, where 0.602 is fitted.
+constexpr double most_above_rest = 0.01;
+
+/// The packing fraction at rest is told by so many places or not at all. With the fitted parameters a spot at one
+/// encloses 80 grains.
+constexpr std::size_t least_places_at_rest = 8;
+
+/// The largest dilatancy in R_s. The shear that the lattice of FlowField resolves is at most sqrt(8) over its spacing,
+/// sqrt(8) / R_s; from R_s / sqrt(8) on, sheared places would have no critical packing fraction at all.
+constexpr double largest_dilatancy = 1.0 / 3.0;
 
 /// A packing's critical packing fraction is counted as if its walls stood so much farther in, in diameters: at this
 /// distance a bulk value gives the volumes that moves enclose in DEM's flow within 0.12 %, at any distance from the

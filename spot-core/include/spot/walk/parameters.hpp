@@ -34,7 +34,7 @@ struct SpotParameters {
   /// Of climb, in which a spot leaves a share of its volume as large as that by which the packing is too dense
   /// (length).
   double exchange_length = 0.0;
-  /// a: shear s for each length that grains fall (FlowField) lowers phi_c by a s, of itself (length).
+  /// a: shear s for each length that grains fall (FlowField) lowers phi_c by a s, of itself (length). At most R_s / 3.
   double dilatancy = 0.0;
   /// L: it narrows the walk, to b_s / (1 + L s) (length). 0: the walk does not depend on the flow (2006).
   double shear_length = 0.0;

@@ -30,8 +30,8 @@ class Spots {
   using VisitGrains = std::function<void(const std::function<void(const Vector3&)>&)>;
 
   /// In the order of (time, spot): the next step of any spot up to and including `time`, or none. The spot has been
-  /// moved. Relative speeds are set, and flow and surface brought up to date, whenever a spot has climbed a tenth of
-  /// its radius at v_s. `visit_grains`: by default there are none.
+  /// moved. Relative speeds are set, and the flow brought up to date, whenever a spot has climbed a tenth of its radius
+  /// at v_s, and the surface as by update_surface(). `visit_grains`: by default there are none.
   std::optional<Move> next_step(
       double time, const Container& container, const VisitGrains& visit_grains = [](const auto&) {});
 
@@ -60,8 +60,9 @@ class Spots {
   /// Collective. `elapsed` after the last time, spots learn how the flow is sheared now.
   void update_flow(double elapsed, Communicator& communicator);
 
-  /// Collective. Spots learn where the free surface is now, if they have to know.
-  void update_surface(const VisitGrains& visit_grains, Communicator& communicator);
+  /// Collective. Spots learn where the free surface is now, if they have to know: once in each interval in which a spot
+  /// at v_s climbs calibration::climb_between_surfaces, whatever the times of the calls in it after the first.
+  void update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator);
 
   /// There is nothing left above the spot. One that is gone already may be named again.
   void remove(std::int64_t spot);
@@ -115,6 +116,8 @@ class Spots {
   bool shears_;
   FlowField flow_;
   FreeSurface surface_;
+  double surface_interval_;
+  std::int64_t surfaces_ = 0;  // intervals until the surface is to be found next
 
   // Of spots that step in the order of time.
   std::vector<Event> events_;  // a heap of next steps; those of removed spots are dropped when they come up

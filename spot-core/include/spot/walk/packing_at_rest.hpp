@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "spot/base/vector.hpp"
+#include "spot/geometry/container.hpp"
+#include "spot/parallel/communicator.hpp"
+#include "spot/walk/parameters.hpp"
+
+namespace spot {
+
+/// A grain, as far as a spot that encloses it has to know it.
+struct EnclosedGrain {
+  Vector3 position;
+  int volume;  ///< 1024 = grain_volume
+};
+
+/// The packing fraction that spots see in the bulk of a packing before they move it: the grain volume that moves would
+/// enclose at some places, over what they would enclose at a packing fraction of 1 (CriticalState), each summed over
+/// all places.
+///
+/// These are nodes of a NodeLattice, R_s apart, but no closer than grains are: inside the walls, where spots leave
+/// volume (calibration::least_height_of_exchange), and with the whole influence two diameters or more below the free
+/// surface. None if there are fewer than calibration::least_places_at_rest of them, as in a small heap, or more than
+/// grains could fill, as while they fall.
+///
+/// Collective: `grains` are those of this rank, and the same bits come out on any ranks. The parameters must have a
+/// critical packing fraction.
+std::optional<double> packing_fraction_at_rest(const SpotParameters& parameters, const Container& container,
+                                               double diameter, const std::vector<EnclosedGrain>& grains,
+                                               Communicator& communicator);
+
+}  // namespace spot
