@@ -195,6 +195,11 @@ const std::map<std::string, Reader>& readers() {
       {"momentum", [](SpotCommand& c, Words& w) { c.momentum = w.not_negative("the momentum"); }},
       {"contact",
        [](SpotCommand& c, Words& w) { c.contact_overlap = w.not_negative("the overlap in contact, in diameters,"); }},
+      {"closing",
+       [](SpotCommand& c, Words& w) {
+         c.relaxation.closing_gap = w.not_negative("the gap that is closed, in diameters,");
+         c.relaxation.closing_share = w.not_negative("the share by which gaps are closed");
+       }},
       {"volume", [](SpotCommand& c, Words& w) { c.spots.fixed_volume = w.not_negative("the number of grains"); }},
       {"steps",
        [](SpotCommand& c, Words& w) {
@@ -341,5 +346,6 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"strength", relaxation.strength == spot::RelaxationStrength::half_each ? "half" : "full"},
           {"momentum", precise(relaxation.momentum)},
           {"contact", precise(relaxation.contact_overlap)},
+          {"closing", precise(relaxation.closing_gap, ' ', relaxation.closing_share)},
           {"shell", precise(relaxation.shell)}};
 }

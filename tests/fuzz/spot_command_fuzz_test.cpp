@@ -32,7 +32,8 @@ const std::vector<std::string> valid = {
     "cylinder 0 0 10 orifice 1 -2 0 4 speed 3.2 injection 388 seed 7 accuracy exact overlap 0.1 average 10",
     "region hopper orifice 0 0 0 4 radius 2.6 influence 2.5e-3 diffusion 1.25 dz 0.1 speed 3.2 injection 388 outlet -1 "
     "relax every 10 strength full alpha 0.7 shell 2",
-    "box -5 5 -4 4 orifice 0 0 0 3.5 speed 3.2 injection 388 relax tol 2e-3 momentum 0.5 contact 1e-3 window 0.02 "
+    "box -5 5 -4 4 orifice 0 0 0 3.5 speed 3.2 injection 388 relax tol 2e-3 momentum 0.5 contact 1e-3 closing 4e-3 0.1 "
+    "window 0.02 "
     "buffer 0.5 0"};
 
 const Words numbers = {"nan",

@@ -231,9 +231,9 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
   EXPECT_THAT(error_of(complete + "relax often"),
               AllOf(HasSubstr("'relax often' is not known"), HasSubstr("'relax tol delta'"), HasSubstr("'relax never'"),
                     HasSubstr("'every', 'chance', 'spot' and 'global'")));
-  for (const std::string keyword :
-       {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads", "momentum", "contact",
-        "volume", "critical", "critical 0.58", "dilatancy", "shear", "surface", "nonaffine", "nonaffine 0.1"})
+  for (const std::string keyword : {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads",
+                                    "momentum", "contact", "closing", "closing 0.004", "volume", "critical",
+                                    "critical 0.58", "dilatancy", "shear", "surface", "nonaffine", "nonaffine 0.1"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -252,6 +252,12 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   EXPECT_THAT(error_of(complete + "contact -1e-3"),
               AllOf(HasSubstr("'contact' is -0.001"), HasSubstr("zero or positive")));
   EXPECT_THROW(resolved("contact 0.1").relaxation.validate(), InvalidParameter);
+  EXPECT_THAT(error_of(complete + "closing -4e-3 0.1"),
+              AllOf(HasSubstr("'closing' is -0.004"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "closing 4e-3 -1"), AllOf(HasSubstr("'closing' is -1"), HasSubstr("the share")));
+  EXPECT_THAT(error_of(complete + "closing 4e-3 shear 2"), HasSubstr("'shear' is not a finite number"));
+  EXPECT_THROW(resolved("closing 0.06 0.1").relaxation.validate(), InvalidParameter);
+  EXPECT_THROW(resolved("closing 0.004 1.1").relaxation.validate(), InvalidParameter);
   EXPECT_THAT(error_of(complete + "volume -1"), AllOf(HasSubstr("'volume' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "critical -0.58 1"),
               AllOf(HasSubstr("'critical' is -0.58"), HasSubstr("zero or positive")));
@@ -293,6 +299,18 @@ TEST(SpotCommand, SettingsTellWhatSpotsLeaveAndHowShearNarrowsThem) {
   EXPECT_EQ(found["critical"], "0 0");
   EXPECT_EQ(found["dilatancy"], "0");
   EXPECT_EQ(found["shear"], "0");
+}
+
+TEST(SpotCommand, GapsAreClosedOnlyIfAskedFor) {
+  for (const std::string more : {"", "accuracy fast", "accuracy exact", "relax every 1"}) {
+    EXPECT_EQ(resolved(more).relaxation.closing_gap, 0.0) << more;
+    const SpotCommand closing = resolved("closing 4e-3 0.125 " + more, 3.0);
+    EXPECT_EQ(closing.relaxation.closing_gap, 4e-3) << more << ": in diameters, whatever their length";
+    EXPECT_EQ(closing.relaxation.closing_share, 0.125) << more;
+    EXPECT_NO_THROW(closing.relaxation.validate()) << more;
+    const auto settings = closing.settings();
+    EXPECT_THAT(settings, testing::Contains(testing::Pair("closing", "0.0040000000000000001 0.125")));
+  }
 }
 
 TEST(SpotCommand, OnlyThreadsMayBeModified) {
@@ -339,7 +357,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "spot",      "global",      "silo",
                                                "peratom",   "yes",         "no",
                                                "critical",  "dilatancy",   "shear",
-                                               "surface",   "nonaffine"};
+                                               "surface",   "nonaffine",   "closing"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -459,6 +477,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"accuracy", std::string(c.accuracy == Accuracy::normal ? "normal" : "another") +
                        ", which sets dz, relax, alpha, momentum and contact"},
       {"strength", c.relaxation.strength == spot::RelaxationStrength::half_each ? "half" : "full"},
+      {"closing", in(c.relaxation.closing_gap, "")},
       {"shell", in(c.relaxation.shell, "")},
       {"overlap", in(c.largest_overlap, "")},
       {"average", std::to_string(c.average)},

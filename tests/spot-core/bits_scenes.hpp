@@ -147,6 +147,11 @@ class PinnedScenes {
     scene("dilation", [](PinnedScene& s) { s.spots.dilation = 0.03; });
     scene("together", [](PinnedScene& s) { s.spots.together = true; });
     scene("contact-overlap", [](PinnedScene& s) { s.relaxation.contact_overlap = 2e-3; });
+    scene("closing", [](PinnedScene& s) {
+      s.relaxation.contact_overlap = 2e-3;
+      s.relaxation.closing_gap = 4e-3;
+      s.relaxation.closing_share = 0.1;
+    });
     scene("full-strength", [](PinnedScene& s) {
       s.relaxation.strength = spot::RelaxationStrength::full_each;
       s.relaxation.alpha = 0.5;

@@ -179,8 +179,10 @@ class PlainDrainage {
       if (!movable[i]) continue;
       for (std::size_t j = 0; j < grains_.size(); ++j) {
         const Vector3 apart = grains_[i].position - grains_[j].position;
-        if (j == i || squared(apart) >= 1.0) continue;
-        const double share = movable[j] ? relaxation_.pair_share() : relaxation_.fixed_share();
+        const double widest = 1.0 + relaxation_.closing_gap;
+        if (j == i || squared(apart) >= widest * widest) continue;
+        double share = movable[j] ? relaxation_.pair_share() : relaxation_.fixed_share();
+        if (squared(apart) > 1.0) share *= relaxation_.closing_share;
         const double distance = std::sqrt(squared(apart));
         push(i, share * (1.0 - distance) / distance, apart);
       }
@@ -296,6 +298,13 @@ Scheme make_scheme(const std::string& name, RelaxationSchedule schedule, int eve
   return scheme;
 }
 
+Scheme with_closing(Scheme scheme, double gap, double share) {
+  scheme.relaxation.closing_gap = gap;
+  scheme.relaxation.closing_share = share;
+  scheme.name += "Closing";
+  return scheme;
+}
+
 Scheme with(Scheme scheme, double fixed_volume, bool together) {
   scheme.fixed_volume = fixed_volume;
   scheme.together = together;
@@ -319,6 +328,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, DrainageBruteForce,
                          testing::Values(make_scheme("Of2006", 2.5e-3, RelaxationStrength::full_each, 1.0, 1),
                                          make_scheme("Of2010", 2.5e-3, RelaxationStrength::half_each, 1.0, 1), strong,
                                          with(strong, 77.0, false), with(strong, 0.0, true), with(strong, 77.0, true),
+                                         with_closing(strong, 0.004, 0.1), with_closing(global, 0.05, 1.0),
                                          with_ingredients(strong, 77.0, 0.56, 0.0),
                                          with_ingredients(strong, 0.0, 0.0, 0.2),
                                          with_ingredients(strong, 77.0, 0.56, 0.2), chance, with(chance, 0.0, true),

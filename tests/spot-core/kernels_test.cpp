@@ -220,14 +220,14 @@ struct Listed {
   spot::kernels::Lists lists() const { return {neighbours.data(), blocks.data(), sizes.data()}; }
 
   /// Half of the free grains are swept.
-  std::vector<Point> pushes(const Kernels& build) const {
+  std::vector<Point> pushes(const Kernels& build, const spot::kernels::Gaps& gaps = {}) const {
     auto marked = points;
     for (std::size_t i = 0; i < marked.size(); i += 2)
       if (marked[i].state == Point::free) marked[i].state = Point::swept;
     std::vector<Point> all(grains.size());
     auto padded = grains;
     padded.resize(grains.size() + spot::kernels::ahead, 0);
-    build.push_off_neighbours(marked.data(), padded.data(), grains.size(), lists(), {per_square, 0.4f, 0.8f},
+    build.push_off_neighbours(marked.data(), padded.data(), grains.size(), lists(), {per_square, 0.4f, 0.8f, gaps},
                               all.data());
     return all;
   }
@@ -244,7 +244,18 @@ TEST(KernelsInvariance, PushesAreTheSameInEveryBuild) {
     }
     EXPECT_GT(pushed, 20);
     EXPECT_LT(coincident, pushed);
-    for (const Kernels* build : spot::kernels::runnable()) expect_same(listed.pushes(*build), plain, *build);
+    const auto closing = listed.pushes(base, {0.5f, 0.3f});
+    int drawn = 0;
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      drawn += closing[i].x != plain[i].x;
+      EXPECT_EQ(closing[i].state, plain[i].state) << "the depth is that of overlaps";
+    }
+    EXPECT_GT(drawn, 10);
+    for (const Kernels* build : spot::kernels::runnable()) {
+      expect_same(listed.pushes(*build), plain, *build);
+      expect_same(listed.pushes(*build, {0.5f, 0.3f}), closing, *build);
+      expect_same(listed.pushes(*build, {0.5f, 0.0f}), plain, *build);
+    }
   }
 }
 
@@ -280,6 +291,51 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
                              {per_square, 0.2f, 0.4f}, half.data());
     EXPECT_NEAR(half[0].x, 0.5 * pushes[0].x, 1.0) << "the pair's share";
     expect_same({half[1]}, {pushes[1]}, base);
+  }
+}
+
+/// Both kernels, against double precision: gaps below the widest are closed by their share of (r - d), along the line
+/// of centres, all others left alone.
+TEST(KernelsAnalytic, GapsAreClosedByTheirShareOfWhatOverlapsArePushedApartBy) {
+  scenes::Draws draws(4);
+  const std::vector<std::uint32_t> neighbours = [] {
+    std::vector<std::uint32_t> both(32, 0);
+    both[0] = 1;
+    return both;
+  }();
+  const std::vector<std::uint32_t> blocks = {0, 1};
+  const std::vector<std::uint8_t> sizes = {1, 1};
+  const std::vector<std::uint32_t> grains = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0};  // and those fetched ahead
+  const spot::kernels::Lists lists = {neighbours.data(), blocks.data(), sizes.data()};
+  const double widest = 0.02, share = 0.1;
+  const spot::kernels::Gaps gaps = {static_cast<float>((1.0 + widest) * (1.0 + widest) - 1.0),
+                                    static_cast<float>(share)};
+  const double radii[] = {0.3, 0.45};
+  const std::vector<spot::GrainSize> unequal = {{0, static_cast<float>(radii[0] * diameter), 0},
+                                                {0, static_cast<float>(radii[1] * diameter), 0}};
+  for (int k = 0; k < 1000; ++k) {
+    const double gap = draws.uniform(1e-4, 2.0 * widest);
+    if (std::abs(gap - widest) < 1e-6) continue;
+    spot::Vector3 along = draws.in_box({-1, -1, -1}, {1, 1, 1});
+    along.normalize();
+    for (const Kernels* build : spot::kernels::runnable())
+      for (const double touching : {1.0, radii[0] + radii[1]}) {
+        std::vector<Point> points = {point_at({1, 1, 1}),
+                                     point_at(spot::Vector3(1, 1, 1) + (1.0 + gap) * touching * along)};
+        points[1].state = k % 2 == 0 ? Point::swept : Point::free;
+        std::vector<Point> pushes(2);
+        if (touching == 1.0)
+          build->push_off_neighbours(points.data(), grains.data(), 2, lists, {per_square, 0.2f, 0.4f, gaps},
+                                     pushes.data());
+        else
+          build->push_off_unequal_neighbours(points.data(), unequal.data(), grains.data(), 2, lists,
+                                             {1.0f, 0.2f, 0.4f, gaps}, pushes.data());
+        const double part = gap < widest ? share * (k % 2 == 0 ? 0.2 : 0.4) : 0.0;
+        const spot::Vector3 push(pushes[0].x, pushes[0].y, pushes[0].z);
+        EXPECT_LT((push / diameter - part * gap * touching * along).norm(), 1e-4 * part * gap + 1e-6) << gap;
+        EXPECT_EQ(depth_of(pushes[0]), 0.0f);
+        EXPECT_EQ(push.dot(along) > 0.0, gap < widest) << gap;
+      }
   }
 }
 

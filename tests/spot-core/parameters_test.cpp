@@ -292,6 +292,26 @@ TEST(ParametersUnit, OverlapInContactOutOfRangeNamesTheWordAndTheBound) {
   }
 }
 
+TEST(ParametersUnit, ClosingOutOfRangeNamesTheWordAndTheBound) {
+  RelaxationParameters relaxation;
+  for (const auto& [gap, share] : {std::pair(0.0, 0.1), {4e-3, 0.0}, {4e-3, 0.1}, {0.05, 1.0}}) {
+    relaxation.closing_gap = gap;
+    relaxation.closing_share = share;
+    EXPECT_NO_THROW(relaxation.validate()) << gap << ", " << share;
+  }
+  for (const double bad : {-1e-9, 0.0501, infinity, std::nan("")}) {
+    relaxation.closing_gap = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { relaxation.validate(); }),
+                AllOf(HasSubstr("gap that is closed is "), HasSubstr("from 0 (off) to 0.05")));
+  }
+  relaxation.closing_gap = 4e-3;
+  for (const double bad : {-1e-9, 1.0001, infinity, std::nan("")}) {
+    relaxation.closing_share = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { relaxation.validate(); }),
+                AllOf(HasSubstr("share by which gaps are closed is "), HasSubstr("from 0 (off) to 1")));
+  }
+}
+
 TEST(ParametersUnit, RelaxationDefaultsAreThoseOf2010) {
   const RelaxationParameters relaxation;
   EXPECT_EQ(relaxation.alpha, 0.8);
@@ -301,6 +321,8 @@ TEST(ParametersUnit, RelaxationDefaultsAreThoseOf2010) {
   EXPECT_EQ(relaxation.schedule, spot::RelaxationSchedule::moves);
   EXPECT_EQ(relaxation.momentum, 0.0);
   EXPECT_EQ(relaxation.contact_overlap, 0.0);
+  EXPECT_EQ(relaxation.closing_gap, 0.0);
+  EXPECT_EQ(relaxation.closing_share, 0.0);
 }
 
 TEST(ParametersUnit, RelaxationShares) {

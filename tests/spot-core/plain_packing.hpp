@@ -187,8 +187,10 @@ class PlainPacking {
       if (&other == &own) continue;
       const auto [x, y, z] = differences(own.at, other.at);
       const float s = overlap((x * x + y * y) + z * z, own, other, parameters.contact_overlap);
-      if (!(s > 0.0f)) continue;
-      const auto share = static_cast<float>(other.swept ? parameters.pair_share() : parameters.fixed_share());
+      const double widest = 1.0 + parameters.closing_gap / (1.0 - parameters.contact_overlap);
+      if (!(s > -static_cast<float>(widest * widest - 1.0))) continue;
+      auto share = static_cast<float>(other.swept ? parameters.pair_share() : parameters.fixed_share());
+      if (s < 0.0f) share *= static_cast<float>(parameters.closing_share);
       const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
       add({static_cast<std::int64_t>(scale * x), static_cast<std::int64_t>(scale * y),
            static_cast<std::int64_t>(scale * z)});

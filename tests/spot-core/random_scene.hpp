@@ -25,8 +25,10 @@ class RandomScene {
     draw_grains();
     draw_relaxation();
     draw_schedule();
-    // Drawn last, so that all else in a scene is as it was before there were contact overlaps.
+    // Drawn last, so that all else in a scene is as it was before there were contact overlaps and closing.
     relaxation_.contact_overlap = chance(0.5) ? log_uniform(1e-4, 1e-2) : 0.0;
+    relaxation_.closing_gap = chance(0.3) ? log_uniform(1e-4, 1e-2) : 0.0;
+    relaxation_.closing_share = draws_.uniform(0.0, 0.5);
   }
 
   std::unique_ptr<spot::Drainage> start(int threads) const {
@@ -57,7 +59,8 @@ class RandomScene {
         ", dx = ", spots_.step_width / d, ", dz = ", spots_.step_height / d, ", nu_s = ", spots_.injection_rate.largest(),
         ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation, spots_.together ? ", together" : "",
         ", alpha ", relaxation_.alpha, ", momentum ", relaxation_.momentum, ", tolerance ", relaxation_.tolerance,
-        ", contact ", relaxation_.contact_overlap, ", ", windows_, " windows of ", window_,
+        ", contact ", relaxation_.contact_overlap, ", closing ", relaxation_.closing_gap, ' ',
+        relaxation_.closing_share, ", ", windows_, " windows of ", window_,
         time_ordered_ ? ", time-ordered, every " : ", windowed, every ", relaxation_.every);
   }
 

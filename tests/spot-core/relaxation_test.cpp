@@ -69,6 +69,44 @@ TEST(RelaxationUnit, GrainsComeToRestInContact) {
   EXPECT_NEAR(grains[1].position.x(), 0.995, close);
 }
 
+TEST(RelaxationUnit, SmallGapsAreClosedAndNoOthers) {
+  RelaxationParameters relaxation;
+  relaxation.contact_overlap = 0.01;
+  relaxation.closing_gap = 0.004;
+  relaxation.closing_share = 0.25;
+  const auto apart = [&](double distance, bool held = false) {
+    const auto grains = swept({{1, {0.0, 0.0, 0.0}, held}, {2, {distance, 0.0, 0.0}}}, relaxation);
+    return grains[1].position.x() - grains[0].position.x();
+  };
+  for (const bool held : {false, true}) EXPECT_NEAR(apart(0.993, held), 0.993 - 0.25 * 0.8 * 0.003, close);
+  EXPECT_NEAR(apart(0.9939), 0.9939 - 0.25 * 0.8 * 0.0039, close);
+  for (const double alone : {0.99, 0.9941, 1.0, 1.003}) EXPECT_NEAR(apart(alone), alone, close);
+  EXPECT_NEAR(apart(0.95), 0.95 + 0.8 * 0.04, close) << "overlaps are parted as without";
+  relaxation.contact_overlap = 0.0;
+  EXPECT_NEAR(apart(1.003), 1.003 - 0.25 * 0.8 * 0.003, close) << "beyond the diameter, too";
+  EXPECT_NEAR(apart(1.0041), 1.0041, close);
+}
+
+/// Both grains go almost as far as lists allow, towards each other, until they have a gap.
+TEST(RelaxationUnit, ListsHoldGapsAsLongAsPairsInContact) {
+  const auto container = scenes::empty_space();
+  RelaxationParameters relaxation;
+  relaxation.closing_gap = 0.05;
+  relaxation.closing_share = 0.5;
+  for (double start = 1.1; start < 1.35; start += 0.005) {
+    Packing packing(1.0, 100.0, {{1, {0.0, 0.0, 0.0}}, {2, {start, 0.0, 0.0}}});
+    packing.hold_gaps(relaxation.closing_gap);
+    packing.refresh(*container);
+    const double by = packing.quantum().round(0.5 * (start - 1.04));
+    packing.move(scenes::index_of(packing, 1), by, 0.0, 0.0);
+    packing.move(scenes::index_of(packing, 2), -by, 0.0, 0.0);
+    packing.update_lists(*container);
+    Relaxation(relaxation).sweep(packing, *container, scenes::all_movable(packing));
+    const auto grains = packing.grains();
+    EXPECT_NEAR(grains[1].position.x() - grains[0].position.x(), 1.04 - 0.4 * 0.04, close) << start;
+  }
+}
+
 TEST(RelaxationUnit, AMovableGrainTakesTheFullShareAgainstAFixedOne) {
   for (const auto strength : {RelaxationStrength::half_each, RelaxationStrength::full_each}) {
     const auto held = swept({{1, {0.0, 0.0, 0.0}, true}, {2, {0.95, 0.0, 0.0}}}, with_strength(strength));

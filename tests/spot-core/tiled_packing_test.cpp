@@ -117,6 +117,15 @@ Treatment with_contacts() {
   return t;
 }
 
+Treatment closing() {
+  Treatment t = with_contacts();
+  t.name = "Closing";
+  t.relaxation.closing_gap = 0.02;
+  t.relaxation.closing_share = 0.3;
+  t.threads = 2;
+  return t;
+}
+
 Treatment with_held_grains() {
   Treatment t{"Held"};
   t.relaxation = relaxation_with(1.2, 0.7);
@@ -257,6 +266,14 @@ Treatment unequal() {
   return t;
 }
 
+Treatment unequal_closing() {
+  Treatment t = unequal();
+  t.name = "UnequalClosing";
+  t.relaxation.closing_gap = 0.05;
+  t.relaxation.closing_share = 1.0;
+  return t;
+}
+
 /// Moves reach across the ends of the period, and grains go through them.
 Treatment repeating(const char* name, bool x, bool y, bool equal) {
   Treatment t{name};
@@ -322,9 +339,9 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
 
 INSTANTIATE_TEST_SUITE_P(Treatments, TiledPackingBruteForce,
                          testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_contacts(),
-                                         with_held_grains(), coincident(), large_steps(), many_moves(), tall(),
-                                         far_from_the_origin(), in_metres(), in_a_cylinder(), in_a_funnel(), unequal(),
-                                         repeating("AlongX", true, false, true),
+                                         closing(), with_held_grains(), coincident(), large_steps(), many_moves(),
+                                         tall(), far_from_the_origin(), in_metres(), in_a_cylinder(), in_a_funnel(),
+                                         unequal(), unequal_closing(), repeating("AlongX", true, false, true),
                                          repeating("AlongY", false, true, false),
                                          repeating("AlongBoth", true, true, false)),
                          [](const auto& treatment) { return treatment.param.name; });
@@ -545,6 +562,57 @@ TEST(TiledPackingAnalytic, GrainsComeToRestInContact) {
   const auto grains = sorted_grains(packing);
   EXPECT_NEAR(grains[1].position.x() - grains[0].position.x(), 0.99, 1e-6);
   EXPECT_NEAR(grains[3].position.x() - grains[2].position.x(), 0.995, 1e-6) << "nobody parts those who overlap by less";
+}
+
+/// Gaps of 0.003 beyond where they are left alone, of 0.005 and, of grains that are in contact, none.
+TEST(TiledPackingAnalytic, SmallGapsAreClosedAndNoOthers) {
+  const auto space = scenes::empty_space();
+  RelaxationParameters relaxation;
+  relaxation.contact_overlap = 0.01;
+  relaxation.closing_gap = 0.004;
+  relaxation.closing_share = 0.25;
+  TiledPacking packing(
+      1.0, 100.0, 0.0,
+      {{1, {1, 1, 1}}, {2, {1.993, 1, 1}}, {3, {5, 1, 1}}, {4, {5.995, 1, 1}}, {5, {9, 1, 1}}, {6, {9.99, 1, 1}}},
+      *space);
+  Workers workers(1);
+  spot::CellRelaxation sweeps(packing, relaxation);
+  const auto distance = [&](std::size_t i) {
+    const auto grains = sorted_grains(packing);
+    return grains[i + 1].position.x() - grains[i].position.x();
+  };
+  double gap = 0.003;
+  for (int sweep = 0; sweep < 5; ++sweep) {
+    sweeps.sweep(0, 1.0, *space, workers);
+    EXPECT_NEAR(sweeps.largest_overlap(), 0.01, 1e-6) << "gaps are no overlaps";
+    gap *= 1.0 - 0.25 * 0.8;  // each grain by half of that
+    EXPECT_NEAR(distance(0), 0.99 + gap, 1e-6) << "sweep " << sweep;
+    EXPECT_NEAR(distance(2), 0.995, 1e-6);
+    EXPECT_NEAR(distance(4), 0.99, 1e-6);
+  }
+}
+
+/// Both grains go towards each other until they have a gap: almost as far as lists allow, or a little farther.
+TEST(TiledPackingAnalytic, ListsHoldGapsAsLongAsPairsInContact) {
+  const auto space = scenes::empty_space();
+  RelaxationParameters relaxation;
+  relaxation.closing_gap = 0.05;
+  relaxation.closing_share = 0.5;
+  Workers workers(1);
+  for (double start = 1.3; start < 1.75; start += 0.005) {
+    TiledPacking packing(1.0, 100.0, -5.0, {{1, {1, 1, 1}}, {2, {1 + start, 1, 1}}}, *space);
+    spot::CellRelaxation sweeps(packing, relaxation);
+    spot::Cells& cells = packing.cells();
+    const auto by = static_cast<std::int32_t>(0.5 * (start - 1.04) / packing.quantum().length());
+    cells.visit_own([&](std::uint32_t slot) {
+      cells.points[slot].x += cells.ids[slot] == 1 ? by : -by;
+      cells.drift[cells.cell_of(slot)] = by;
+    });
+    packing.update_lists(*space, workers);
+    sweeps.sweep(0, 1.0, *space, workers);
+    const auto grains = sorted_grains(packing);
+    EXPECT_NEAR(grains[1].position.x() - grains[0].position.x(), 1.04 - 0.4 * 0.04, 1e-6) << start;
+  }
 }
 
 TEST(TiledPackingUnit, CoincidentGrainsPartAlongX) {

@@ -90,6 +90,10 @@ void add_windowed_parameters(std::vector<Case>& cases) {
   });
   add("contact / d", {1e-6, 1e-4, 5e-3, 0.02, 0.05, 0.06},
       [](Scene& s, double v) { s.relaxation.contact_overlap = v; });
+  add("closing g / d, k 0.1", {1e-4, 4e-3, 0.05, 0.06}, [](Scene& s, double v) {
+    s.relaxation.closing_gap = v;
+    s.relaxation.closing_share = 0.1;
+  });
   add("tolerance / d", {1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1}, [](Scene& s, double v) { s.relaxation.tolerance = v; });
   add("window / tau", {1e-3, 0.01, 0.05, 0.1, 0.5, 1}, [](Scene& s, double v) { s.window = v; });
   add("fixed volume / grains", {1, 77, 300, 1e3, 1e5, 1e300}, [](Scene& s, double v) { s.spots.fixed_volume = v; });
@@ -195,6 +199,8 @@ void add_odd_numbers(std::vector<Case>& cases) {
       {"alpha", [](Scene& s, double v) { s.relaxation.alpha = v; }},
       {"momentum", [](Scene& s, double v) { s.relaxation.momentum = v; }},
       {"contact", [](Scene& s, double v) { s.relaxation.contact_overlap = v; }},
+      {"closing g", [](Scene& s, double v) { s.relaxation.closing_gap = v; }},
+      {"closing k", [](Scene& s, double v) { s.relaxation.closing_share = v; }},
       {"tolerance", [](Scene& s, double v) { s.relaxation.tolerance = v; }},
       {"window", [](Scene& s, double v) { s.window = v; }},
       {"overlap", [](Scene& s, double v) { s.largest_overlap = v; }},

@@ -30,6 +30,7 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
       spots_(spots, Drainage::container(), packing_.diameter()),
       relaxation_(relaxation) {
   require_same_periods();
+  packing_.hold_gaps(relaxation.closing_gap * packing_.diameter());
   require_valid_start();
   TiledPacking tiled(packing_.diameter(), packing_.extent(), limits.outlet, packing_.grains(), Drainage::container());
   let_settle(tiled, true);
@@ -49,6 +50,7 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
       packing_(diameter, extent, take_grains(saved), Drainage::container().periodic()),
       spots_(spots, Drainage::container(), diameter),
       relaxation_(relaxation) {
+  packing_.hold_gaps(relaxation.closing_gap * diameter);
   spots_.restore(saved);
   set_counters(saved.take<Counters>());
   relaxed_everywhere_ = saved.take<std::int64_t>();
@@ -56,6 +58,11 @@ TimeOrderedDrainage::TimeOrderedDrainage(const SpotParameters& spots, const Rela
 
 void TimeOrderedDrainage::require_same_periods() const {
   container().periodic().require_same_as(packing_.periodic(), packing_.quantum());
+}
+
+void TimeOrderedDrainage::replace_packing(const std::vector<Grain>& grains) {
+  packing_ = Packing(packing_.diameter(), packing_.extent(), grains, packing_.periodic());
+  packing_.hold_gaps(relaxation_parameters().closing_gap * packing_.diameter());
 }
 
 /// Lists need not be saved: no bit depends on them.
@@ -150,7 +157,7 @@ Overlap TimeOrderedDrainage::carry_out(const GrainChanges& changes) {
   for (const Grain& grain : packing_.grains())
     if (gone.count(grain.id) == 0) grains.push_back(grain);
   grains.insert(grains.end(), changes.come.begin(), changes.come.end());
-  packing_ = Packing(packing_.diameter(), packing_.extent(), grains, packing_.periodic());
+  replace_packing(grains);
   if (largest.depth <= limits().largest_overlap) let_settle(tiled, false);
   return largest;
 }
@@ -169,7 +176,7 @@ void TimeOrderedDrainage::let_settle(TiledPacking& tiled, bool everybody) {
   std::vector<Grain> grains = packing_.grains();
   for (Grain& grain : grains)
     if (const auto found = moved.find(grain.id); found != moved.end()) grain.position = found->second;
-  packing_ = Packing(packing_.diameter(), packing_.extent(), grains, packing_.periodic());
+  replace_packing(grains);
 }
 
 void TimeOrderedDrainage::take_new_container() {

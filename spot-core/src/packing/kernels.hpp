@@ -27,17 +27,25 @@ struct Lists {
   const std::uint8_t* size;
 };
 
+/// Which gaps are closed, and how.
+struct Gaps {
+  float widest = 0.0f;  ///< r^2/d^2 - 1, d being how far apart grains are left alone; 0: none
+  float share = 0.0f;   ///< of what an overlap as large would be pushed apart by
+};
+
 /// How grains push each other apart.
 struct Push {
   float per_square;   ///< 1/d^2 in quanta
   float pair_share;   ///< of the overlap, by which each of two grains moves
   float fixed_share;  ///< of the overlap, by which a grain moves if the other stays
+  Gaps gaps = {};
 };
 
 /// How unequal grains do: those of radii a and b go apart until they are (a + b) `touch` from each other.
 struct UnequalPush {
   float touch;
   float pair_share, fixed_share;  ///< as above
+  Gaps gaps = {};
 };
 
 /// One build of all kernels. They are compiled several times, for different instruction sets, from kernels.inl; results
@@ -59,7 +67,8 @@ struct Kernels {
   /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
   /// the line of centres for r < d, each component cut to whole quanta; the pair's share if the neighbour is swept, the
   /// fixed one if not. (d - r) / r is expanded in s = 1 - r^2/d^2, good to 1e-4 of itself for overlaps up to 0.05 d;
-  /// deeper ones are pushed apart by somewhat less, which another sweep makes good.
+  /// deeper ones are pushed apart by somewhat less, which another sweep makes good. Gaps that are to be closed are
+  /// negative overlaps, of which no depth is told.
   void (*push_off_neighbours)(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
                               const Push& push, Point* pushes);
 

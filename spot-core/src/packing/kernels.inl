@@ -11,6 +11,7 @@ using spot::Corrections;
 using spot::Point;
 using spot::Reach;
 using spot::kernels::ahead;
+using spot::kernels::Gaps;
 using spot::kernels::Lists;
 using spot::kernels::Tilt;
 
@@ -58,9 +59,24 @@ struct UnequalGrains {
   }
 };
 
-template <typename Shares, typename Grains>
-void push_off(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
-              const Shares& shares, const Grains& radii, Point* pushes) {
+/// Which pairs are pushed, and by what share, decides whether gaps between grains stay or are closed.
+struct GapsStay {
+  explicit GapsStay(const Gaps&) {}
+  bool moves(float s) const { return s > 0.0f; }
+  float share_at(float, float share) const { return share; }
+};
+
+struct GapsClose {
+  float least, share;
+  explicit GapsClose(const Gaps& gaps) : least(-gaps.widest), share(gaps.share) {}
+  bool moves(float s) const { return s > least; }
+  float share_at(float s, float of_overlap) const { return s < 0.0f ? of_overlap * share : of_overlap; }
+};
+
+template <typename Gap, typename Shares, typename Grains>
+void push_off(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists, const Shares& shares,
+              const Grains& radii, Point* pushes) {
+  const Gap gap(shares.gaps);
   for (std::size_t i = 0; i < n; ++i) {
     const Point& own = points[grains[i]];
     const std::uint32_t* list = list_of(lists, grains[i]);
@@ -71,8 +87,8 @@ void push_off(const Point* points, const std::uint32_t* grains, std::size_t n, c
       const float dx = static_cast<float>(own.x - other.x), dy = static_cast<float>(own.y - other.y),
                   dz = static_cast<float>(own.z - other.z);
       const float s = radii.overlap((dx * dx + dy * dy) + dz * dz, grains[i], list[k]);
-      if (!(s > 0.0f)) continue;
-      const float share = other.state == Point::swept ? shares.pair_share : shares.fixed_share;
+      if (!gap.moves(s)) continue;
+      const float share = gap.share_at(s, other.state == Point::swept ? shares.pair_share : shares.fixed_share);
       const float scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
       add(sum, static_cast<std::int32_t>(scale * dx), static_cast<std::int32_t>(scale * dy),
           static_cast<std::int32_t>(scale * dz));
@@ -86,7 +102,11 @@ void push_off(const Point* points, const std::uint32_t* grains, std::size_t n, c
 void push_off_unequal_neighbours(const Point* points, const spot::GrainSize* sizes, const std::uint32_t* grains,
                                  std::size_t n, const Lists& lists, const spot::kernels::UnequalPush& push,
                                  Point* pushes) {
-  push_off(points, grains, n, lists, push, UnequalGrains{sizes, push.touch}, pushes);
+  const UnequalGrains radii = {sizes, push.touch};
+  if (push.gaps.widest > 0.0f)
+    push_off<GapsClose>(points, grains, n, lists, push, radii, pushes);
+  else
+    push_off<GapsStay>(points, grains, n, lists, push, radii, pushes);
 }
 
 int enclosed_volume_of_unequal(const Point* points, const spot::GrainSize* sizes, std::size_t n, const Point& middle,
@@ -143,9 +163,10 @@ float farthest(const Point* points, const Point* references, std::size_t n) {
   return largest;
 }
 
-void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
-                         const spot::kernels::Push& push, Point* pushes) {
-  push_off(points, grains, n, lists, push, EqualGrains{push.per_square}, pushes);
+template <typename Gap>
+void push_off_equal(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
+                    const spot::kernels::Push& push, Point* pushes) {
+  push_off<Gap>(points, grains, n, lists, push, EqualGrains{push.per_square}, pushes);
 }
 
 std::int32_t kept_of(std::int32_t last, float kept) {
@@ -391,8 +412,18 @@ inline Quarter reduce(Pack x, Pack y, Pack z, Floats s) {
   return sums;
 }
 
-void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
-                         const spot::kernels::Push& push, Point* pushes) {
+/// Overlaps of pairs that stay where they are become 0.
+inline Floats moving(const GapsStay&, Floats s) { return s > all(0.0f) ? s : all(0.0f); }
+inline Floats moving(const GapsClose& gap, Floats s) { return s > all(gap.least) ? s : all(0.0f); }
+inline Floats share_at(const GapsStay&, Floats, Floats share) { return share; }
+inline Floats share_at(const GapsClose& gap, Floats s, Floats share) {
+  return s < all(0.0f) ? share * gap.share : share;
+}
+
+template <typename Gap>
+void push_off_equal(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
+                    const spot::kernels::Push& push, Point* pushes) {
+  const Gap gap(push.gaps);
   const Floats per_square = all(push.per_square), zero = all(0.0f);
   const Pack pair_share = (Pack)all(push.pair_share), fixed_share = (Pack)all(push.fixed_share);
   for (std::size_t i = 0; i < n; ++i) {
@@ -411,10 +442,10 @@ void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::
       const Floats dx = floats(x - low_pairs(ab, cd)), dy = floats(y - high_pairs(ab, cd)),
                    dz = floats(z - low_pairs(high(a, b), high(c, d)));
       const Pack is_swept = high_pairs(high(a, b), high(c, d)) == Point::swept;
-      const Floats share = (Floats)((is_swept & pair_share) | (~is_swept & fixed_share));
+      const Floats of_overlap = (Floats)((is_swept & pair_share) | (~is_swept & fixed_share));
       const Floats apart = 1.0f - ((dx * dx + dy * dy) + dz * dz) * per_square;
       const Pack listed = numbers < size - k;
-      const Floats s = (Floats)((Pack)(apart > zero ? apart : zero) & listed);
+      const Floats s = (Floats)((Pack)moving(gap, apart) & listed), share = share_at(gap, s, of_overlap);
       const Floats scale = (share * s) * (0.5f + s * (0.375f + s * (0.3125f + s * 0.2734375f)));
       push_x += whole(scale * dx);
       push_y += whole(scale * dy);
@@ -438,6 +469,14 @@ std::size_t find_reached(const std::int32_t* values, std::size_t n, std::int32_t
 }
 
 #endif
+
+void push_off_neighbours(const Point* points, const std::uint32_t* grains, std::size_t n, const Lists& lists,
+                         const spot::kernels::Push& push, Point* pushes) {
+  if (push.gaps.widest > 0.0f)
+    push_off_equal<GapsClose>(points, grains, n, lists, push, pushes);
+  else
+    push_off_equal<GapsStay>(points, grains, n, lists, push, pushes);
+}
 
 }  // namespace
 

@@ -32,9 +32,10 @@ void reorder(const std::vector<std::uint32_t>& order, std::vector<T>& values) {
 Packing::Packing(double diameter, double extent, const std::vector<Grain>& grains, const Periodic& periodic)
     : diameter_(diameter),
       extent_(extent),
+      half_skin_(0.5 * skin_in_diameters * diameter),
+      largest_drift_(half_skin_),
       quantum_(diameter, extent),
-      periodic_(periodic.on(quantum_)),
-      half_skin_(0.5 * skin_in_diameters * diameter) {
+      periodic_(periodic.on(quantum_)) {
   periodic_.require_length(least_period * diameter, "four diameters, so that no grain touches another twice");
   for (int axis = 0; axis < 2; ++axis)
     if (periodic_.along(axis) && std::max(-periodic_.low(axis), periodic_.high(axis)) > extent)
@@ -92,6 +93,11 @@ void Packing::find_movable(const Vector3& point, double reach, std::vector<std::
     n += (dx * dx + dy * dy + dz * dz <= reach_squared) & (held[i] == 0) ? 1 : 0;
   });
   found.resize(n);
+}
+
+void Packing::hold_gaps(double widest) {
+  largest_drift_ = half_skin_ - 0.5 * widest;
+  sort_after_ = 0;  // some grains may be farther from their references already
 }
 
 void Packing::list_drifted(const Container& container) {

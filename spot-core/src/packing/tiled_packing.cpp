@@ -130,7 +130,7 @@ void TiledPacking::update_lists(const Container& container, Workers& workers) {
 
 /// Puts grains that are too far from their references into the cells where they are now, and into drifted_.
 void TiledPacking::find_drifted() {
-  const auto allowed = static_cast<std::int32_t>(0.5 * cells_.lattice().skin() / quantum().length());
+  const auto allowed = static_cast<std::int32_t>(lists_.largest_drift() / quantum().length());
   const double kept = part_of_half_skin * allowed;
   const std::uint32_t first_own = cells_.first_own(), owned = cells_.last_own() - first_own;
   found_.resize(owned);

@@ -22,7 +22,9 @@ CellRelaxation::CellRelaxation(TiledPacking& packing, const RelaxationParameters
                                std::unique_ptr<Solver> solver)
     : packing_(packing),
       parameters_(parameters),
-      solver_(solver ? std::move(solver) : solver_for(parameters, packing.kernels())) {}
+      solver_(solver ? std::move(solver) : solver_for(parameters, packing.kernels())) {
+  packing.lists().hold_gaps(parameters.closing_gap * packing.diameter());
+}
 
 std::size_t CellRelaxation::sweep(double moves, double deepest, const Container& container, Workers& workers) {
   const auto parts = static_cast<std::int32_t>(std::min(moves, 1e6) * Cells::parts_of_move);
@@ -31,7 +33,8 @@ std::size_t CellRelaxation::sweep(double moves, double deepest, const Container&
   workers.run([&](int worker) { collect(task_of(worker)); });
   packing_.ghosts().send_positions_of_unrelaxed(parts);
   set_ghosts(Point::free, Point::swept, parts);
-  const PushStrength strength = {parameters_.contact_overlap, parameters_.pair_share(), parameters_.fixed_share()};
+  const PushStrength strength = {parameters_.contact_overlap, parameters_.pair_share(), parameters_.fixed_share(),
+                                 parameters_.closing_gap, parameters_.closing_share};
   const auto ask_container = [&](Task& task) {
     add_pushes_of_other_walls(packing_, strength.fixed_share, container, task.grains);
   };

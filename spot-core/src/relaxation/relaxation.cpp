@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "packing/wrapped_integers.hpp"
+
 namespace spot {
 
 Relaxation::Relaxation(const RelaxationParameters& parameters) : parameters_(parameters) { parameters_.validate(); }
@@ -14,6 +16,7 @@ double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, 
   const double radius = packing.radius(i);
   const Quantum& quantum = packing.quantum();
   const Periodic& periodic = packing.periodic();
+  const double reach = std::max(1.0, parameters_.distance_in_contact(1.0) + parameters_.closing_gap);
   double deepest = 0.0;
   const auto [first, last] = packing.neighbours(i);
   for (const std::uint32_t* j = first; j != last; ++j) {
@@ -22,11 +25,12 @@ double Relaxation::push_off_neighbours(const Packing& packing, std::uint32_t i, 
     periodic.shorten(dx, dy);
     const double squared = dx * dx + dy * dy + dz * dz;
     const double touching = radius + packing.radius(*j);
-    if (squared >= touching * touching) continue;
+    if (squared >= square(reach * touching)) continue;
     const double distance = std::sqrt(squared), parted = parameters_.distance_in_contact(touching);
     deepest = std::max(deepest, 1.0 - distance / touching);
-    if (squared >= parted * parted) continue;
-    const double share = is_movable_[*j] ? parameters_.pair_share() : parameters_.fixed_share();
+    if (squared >= square(parted + parameters_.closing_gap * touching)) continue;
+    double share = is_movable_[*j] ? parameters_.pair_share() : parameters_.fixed_share();
+    if (squared > square(parted)) share *= parameters_.closing_share;
     if (distance == 0.0) {
       // Centres that coincide have no line between them; part them along x, by id so that both agree.
       push.x += quantum.round(packing.id(i) < packing.id(*j) ? -share * touching : share * touching);

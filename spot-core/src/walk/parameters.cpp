@@ -13,6 +13,9 @@ namespace {
 /// In diameters; far from what makes a packing collapse.
 constexpr double largest_contact_overlap = 0.05;
 
+/// In diameters; wider ones are no contacts that moves opened, and lists need a skin beyond them.
+constexpr double largest_closing_gap = 0.05;
+
 void require_positive(const char* name, double value) {
   if (!(value > 0.0) || !std::isfinite(value))
     throw InvalidParameter(message(name, " is ", value, " but must be positive and finite"));
@@ -109,6 +112,12 @@ void RelaxationParameters::validate() const {
   if (!(contact_overlap >= 0.0 && contact_overlap <= largest_contact_overlap))
     throw InvalidParameter(message("overlap in contact is ", contact_overlap, " diameters but must be from 0 to ",
                                    largest_contact_overlap));
+  if (!(closing_gap >= 0.0 && closing_gap <= largest_closing_gap))
+    throw InvalidParameter(
+        message("gap that is closed is ", closing_gap, " diameters but must be from 0 (off) to ", largest_closing_gap));
+  if (!(closing_share >= 0.0 && closing_share <= 1.0))
+    throw InvalidParameter(
+        message("share by which gaps are closed is ", closing_share, " but must be from 0 (off) to 1"));
 }
 
 }  // namespace spot

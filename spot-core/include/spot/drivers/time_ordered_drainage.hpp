@@ -42,6 +42,7 @@ class TimeOrderedDrainage : public Drainage {
   TimeOrderedDrainage(const SpotParameters& spots, const RelaxationParameters& relaxation, const DrainageLimits& limits,
                       std::shared_ptr<const Container> container, double diameter, double extent, ByteReader saved);
   void require_same_periods() const;
+  void replace_packing(const std::vector<Grain>& grains);
   Overlap carry_out(const GrainChanges& changes) override;
   void take_new_container() override;
   void let_settle(TiledPacking& packing, bool everybody);

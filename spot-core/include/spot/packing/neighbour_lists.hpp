@@ -26,8 +26,8 @@ struct Neighbours {
 };
 
 /// The neighbours of every grain: those whose references are closer than diameter + skin. So lists follow from the
-/// references alone, and hold every pair in contact for as long as no grain is half a skin from its reference. Ghosts
-/// have lists, too.
+/// references alone, and hold every pair in contact, and with gaps that they are to hold, for as long as no grain is
+/// farther from its reference than largest_drift(). Ghosts have lists, too.
 ///
 /// Layout: each grain's list takes one or more blocks of kernels::lanes entries in one array; a list that outgrows its
 /// blocks moves to others, and blocks left behind are used again.
@@ -36,6 +36,12 @@ class NeighbourLists : public SlotData {
   NeighbourLists(Cells& cells, WallMarks& walls, const kernels::Kernels& kernels);
 
   Neighbours of(std::uint32_t slot) const { return {list_of(slot), list_of(slot) + size_[slot]}; }
+
+  /// Lists hold pairs with gaps (length) as wide as this, too, from the next time on that grains which have drifted are
+  /// listed anew. Without, those in contact alone.
+  void hold_gaps(double widest) { widest_gap_ = widest; }
+  /// How far a grain may be from its reference (length): half a skin, less what gaps take of it.
+  double largest_drift() const { return 0.5 * (cells_.lattice().skin() - widest_gap_); }
 
   /// Lists a grain and its neighbours with each other, and marks it if it is near a wall.
   void list(std::uint32_t slot, const Container& container);
@@ -77,6 +83,7 @@ class NeighbourLists : public SlotData {
   Cells& cells_;
   WallMarks& walls_;
   const kernels::Kernels& kernels_;
+  double widest_gap_ = 0.0;
   AlignedVector<std::uint32_t> neighbours_;
   std::vector<std::uint32_t> block_;  // the first of each slot
   std::vector<std::uint8_t> room_;    // 2^(room - 1) blocks, or none

@@ -45,6 +45,9 @@ class Packing {
   std::vector<Grain> grains() const;
   Grain grain(std::size_t i) const { return {ids_[i], position(i), held(i), radii_[i]}; }
 
+  /// From the next refresh() on, lists hold pairs with gaps (length) as wide as this, too.
+  void hold_gaps(double widest);
+
   /// Sorts the grains in memory when that has become worth while; indices change, lists are up to date.
   void refresh(const Container& container) {
     if (listed_since_sort_ >= sort_after_) sort(container);
@@ -99,7 +102,7 @@ class Packing {
     double ex = x_[i] - reference_x_[i], ey = y_[i] - reference_y_[i];
     const double ez = z_[i] - reference_z_[i];
     periodic_.shorten(ex, ey);
-    if (ex * ex + ey * ey + ez * ez > half_skin_ * half_skin_) drifted_.push_back(i);
+    if (ex * ex + ey * ey + ez * ez > largest_drift_ * largest_drift_) drifted_.push_back(i);
   }
 
   /// Takes grain i out.
@@ -107,7 +110,6 @@ class Packing {
 
   /// The largest overlap of two grains. The lists must be up to date.
   Overlap largest_overlap() const;
-
   /// The same of some grains and their neighbours.
   Overlap largest_overlap(const std::vector<std::uint32_t>& grains) const;
 
@@ -126,14 +128,12 @@ class Packing {
   void add_neighbour(std::uint32_t i, std::uint32_t j);
   void lengthen_lists();
 
-  double diameter_, extent_;
+  double diameter_, extent_, half_skin_, largest_drift_;  // from a reference: half a skin, less what gaps take
   Quantum quantum_;
   Periodic periodic_;
-  double half_skin_;
   std::vector<std::int64_t> ids_;
-  std::vector<double> x_, y_, z_, radii_;
+  std::vector<double> x_, y_, z_, radii_, reference_x_, reference_y_, reference_z_;
   std::vector<std::uint16_t> volumes_;
-  std::vector<double> reference_x_, reference_y_, reference_z_;
   std::vector<char> held_, near_wall_;
   std::size_t removed_ = 0;
 
@@ -143,7 +143,7 @@ class Packing {
   std::vector<std::uint16_t> list_size_;
   std::size_t list_capacity_ = 16;
 
-  std::vector<std::uint32_t> drifted_;  // half a skin or more from their references; repeats are harmless
+  std::vector<std::uint32_t> drifted_;  // farther from their references; repeats are harmless
   std::size_t listed_since_sort_ = 0, sort_after_ = 0;
 };
 

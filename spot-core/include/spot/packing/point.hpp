@@ -36,11 +36,14 @@ struct Reach {
   float radius_squared, per_square;
 };
 
-/// How far overlapping grains push each other apart in a sweep.
+/// How far overlapping grains push each other apart in a sweep, and how they close gaps.
 struct PushStrength {
   double in_contact;   ///< overlap at which two grains are left alone, in diameters
   double pair_share;   ///< of the overlap beyond that, by which each of two grains moves that both may
   double fixed_share;  ///< the same, of a grain against one that stays, or a wall
+  /// Gaps of two grains beyond the distance at which they are left alone are closed, if they are narrower than the
+  /// first, in diameters; by the second of what an overlap as large would be pushed apart by.
+  double closing_gap = 0.0, closing_share = 0.0;
 };
 
 /// Of the corrections in a cell: the square of the longest, and how deep the deepest overlap was (as in a push).

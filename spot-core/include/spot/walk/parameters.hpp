@@ -111,6 +111,11 @@ struct RelaxationParameters {
   /// Overlap, in diameters, at which two grains are left alone: those that bear on each other overlap (Hertz), and are
   /// in contact. 2006 parts them until they only touch.
   double contact_overlap = 0.0;
+  /// Gaps, in diameters, that are closed: weight closes those that moves open between grains that bear on each other.
+  /// Two grains that are farther apart than they are left alone, but by less than this, are drawn together. 0: gaps
+  /// stay (2006).
+  double closing_gap = 0.0;
+  double closing_share = 0.0;  ///< of what an overlap as large would be pushed apart by in a sweep; 0: gaps stay
 
   /// Share of the overlap by which a movable grain moves against another movable grain.
   double pair_share() const { return strength == RelaxationStrength::half_each ? 0.5 * alpha : alpha; }
