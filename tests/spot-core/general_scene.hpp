@@ -114,14 +114,15 @@ class GeneralScene {
     if (draws.below(2) == 0) relaxation_.contact_overlap = 1e-3;
     if (draws.below(2) == 0) spots_.shear_length = d * draws.uniform(0.5, 5.0);
     if (draws.below(2) == 0) spots_.surface_exponent = draws.uniform(0.5, 6.0);
-    if (draws.below(2) == 0) {
-      spots_.nonaffine = draws.uniform(0.05, 0.5);
-      spots_.nonaffine_length = d * draws.uniform(0.05, 2.0);
-    }
     if (draws.below(2) == 0 && spots_.fixed_volume > 0.0) {
       spots_.critical_fraction = draws.uniform(0.5, 0.7);
       spots_.exchange_length = spots_.step_height * draws.uniform(0.2, 5.0);
       if (draws.below(2) == 0) spots_.dilatancy = d * draws.uniform(0.05, 0.5);
+    }
+    // Drawn last, so that all else in a scene is as it was before.
+    if (draws.below(2) == 0) {
+      spots_.nonaffine = draws.uniform(0.05, 0.5);
+      spots_.nonaffine_length = d * draws.uniform(0.05, 2.0);
     }
   }
 
