@@ -97,7 +97,7 @@ def run_views(run):
 @pytest.fixture(scope="module")
 def dem():
     """A silo between walls at 16 d, 0-50 tau, in a file of format 3."""
-    return run_statistics.load(SILO / "out-of-sample" / "walls-16.npz")
+    return run_statistics.load(SILO / "out-of-sample" / "walls-16-twin.npz")
 
 
 def looser(run, share):
@@ -169,7 +169,7 @@ def test_rows_that_a_reference_does_not_carry(dem):
 
 
 def test_older_statistics_are_read_and_what_they_lack_is_said(dem, tmp_path):
-    with np.load(SILO / "out-of-sample" / "walls-16.npz") as stored:
+    with np.load(SILO / "out-of-sample" / "walls-16-twin.npz") as stored:
         assert json.loads(str(stored["header"]))["format"] == "spot-analysis run statistics 3"
     assert dem.lacking == ("frame_correlation",) and len(dem.measured["frame_correlation"].start) == 0
     dem.save(tmp_path / "again.npz")
@@ -181,7 +181,7 @@ def test_older_statistics_are_read_and_what_they_lack_is_said(dem, tmp_path):
 
 
 def test_another_older_format_is_refused(tmp_path):
-    with np.load(SILO / "out-of-sample" / "walls-16.npz") as stored:
+    with np.load(SILO / "out-of-sample" / "walls-16-twin.npz") as stored:
         arrays = dict(stored)
     header = {**json.loads(str(arrays.pop("header"))), "format": "spot-analysis run statistics 2"}
     np.savez(tmp_path / "old.npz", header=json.dumps(header), **arrays)

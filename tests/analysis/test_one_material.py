@@ -65,7 +65,7 @@ def test_table(call, decks, output):
     assert sorted(path.name for path in output.iterdir()) == ["plug.1.npz", "plug.2.npz", "plug.kinematic.npz", "plug.nothing.npz", "table.md"]
     np.testing.assert_allclose(run_statistics.load(output / "plug.2.npz").times, TIMES)
     asked = (decks / "called").read_text().splitlines()[0]
-    for words in ("-var births 423", "-var half_width 10", "-var seed", f"-var time {14 * one_material.TAU:.9g}", "-var options accuracy normal "):
+    for words in ("-var births 704.6", "-var half_width 10", "-var seed", f"-var time {14 * one_material.TAU:.9g}", "-var options accuracy normal "):
         assert words in asked + " "
 
 
@@ -133,5 +133,5 @@ def test_references_carry_the_rows_that_they_are_said_to(name):
 
 
 def test_births_follow_the_outflow():
-    assert one_material.REFERENCES["reference"].births() == 368
-    assert one_material.REFERENCES["orifice-6.5"].births() == pytest.approx(368 * 31.9 / 69.6, abs=0.05)
+    assert one_material.REFERENCES["reference"].births() == 613
+    assert one_material.REFERENCES["orifice-6.5"].births() == pytest.approx(613 * 31.9 / 69.6, abs=0.05)
