@@ -99,8 +99,8 @@ class PinnedScenes {
     scene.counts_moves = true;
   }
 
-  /// Spots that leave volume behind, see the surface and whose walk shear narrows, and grains that go ways of their own;
-  /// they climb to where they do so, in a taller filling.
+  /// Spots that leave volume behind, see the surface and whose walk shear narrows, and grains that go ways of their
+  /// own; they climb to where they do so, in a taller filling.
   static void all_ingredients(PinnedScene& scene) {
     all_at_once(scene);
     scene.spots.critical_fraction = 0.54;  // the filling has 0.547

@@ -644,6 +644,9 @@ TEST(DrainageUnit, DisplacementIsBoundedWithWhatSpotsTakeUpAndGrainsOwnWays) {
   spots.exchange_length = 1.0;
   EXPECT_NO_THROW(drainage_of({}, spots)) << "one that carries more is cut off earlier";
   spots.nonaffine = 0.2;
+  spots.nonaffine_length = 1e-300;
+  EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { drainage_of({}, spots); }),
+              AllOf(HasSubstr("length of non-affine motion is 1e-300 "), HasSubstr("at least 0.01")));
   spots.nonaffine_length = 1.0;
   EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { drainage_of({}, spots); }),
               AllOf(HasSubstr("up to 0.687"), HasSubstr("at most 0.5")));

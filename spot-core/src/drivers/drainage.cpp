@@ -23,6 +23,9 @@ constexpr double longest_displacement = 0.5;
 /// Steps of spots, in diameters: longer than any spot is wide, or too short to get anywhere.
 constexpr double longest_step = 16.0, shortest_step = 1e-6;
 
+/// Of the fall in which a grain keeps its way, in diameters: with less, ways of their own are noise of every move.
+constexpr double least_own_way = 0.01;
+
 /// Spots born while one climbs a diameter. The fitted parameters have 120.
 constexpr double most_births = 1e7;
 
@@ -36,6 +39,9 @@ void require_steps(const SpotParameters& spots, double diameter) {
   if (!(spots.step_height >= shortest_step * diameter))
     throw InvalidParameter(message("spot step height is ", spots.step_height / diameter,
                                    " diameters but must be at least ", shortest_step));
+  if (spots.nonaffine > 0.0 && !(spots.nonaffine_length >= least_own_way * diameter))
+    throw InvalidParameter(message("length of non-affine motion is ", spots.nonaffine_length / diameter,
+                                   " diameters but must be at least ", least_own_way));
   const double births = spots.injection_rate.largest() * (diameter / spots.speed);
   if (!(births <= most_births))
     throw InvalidParameter(message("spot injection rate is ", spots.injection_rate.largest(), ": ", births,
