@@ -259,24 +259,27 @@ TEST(KernelsInvariance, PushesAreTheSameInEveryBuild) {
   }
 }
 
+/// Points 0 and 1, each the other's only neighbour.
+struct ListedPair {
+  std::vector<std::uint32_t> neighbours = std::vector<std::uint32_t>(32, 0), blocks = {0, 1};
+  std::vector<std::uint8_t> sizes = {1, 1};
+  std::vector<std::uint32_t> grains = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0};  // and those fetched ahead
+
+  ListedPair() { neighbours[0] = 1; }
+  spot::kernels::Lists lists() const { return {neighbours.data(), blocks.data(), sizes.data()}; }
+};
+
 TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
   scenes::Draws draws(3);
-  const std::vector<std::uint32_t> neighbours = [] {
-    std::vector<std::uint32_t> both(32, 0);
-    both[0] = 1;
-    return both;
-  }();
-  const std::vector<std::uint32_t> blocks = {0, 1};
-  const std::vector<std::uint8_t> sizes = {1, 1};
-  const std::vector<std::uint32_t> grains = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0};  // and those fetched ahead
+  const ListedPair pair;
   for (int k = 0; k < 1000; ++k) {
     const double overlap = 0.05 * draws.uniform(0.0, 1.0);
     spot::Vector3 along = draws.in_box({-1, -1, -1}, {1, 1, 1});
     along.normalize();
     std::vector<Point> points = {point_at({1, 1, 1}), point_at(spot::Vector3(1, 1, 1) + (1.0 - overlap) * along)};
     std::vector<Point> pushes(2);
-    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), blocks.data(), sizes.data()},
-                             {per_square, 0.2f, 0.4f}, pushes.data());
+    base.push_off_neighbours(points.data(), pair.grains.data(), 2, pair.lists(), {per_square, 0.2f, 0.4f},
+                             pushes.data());
     const spot::Vector3 push(pushes[0].x, pushes[0].y, pushes[0].z);
     // To 1e-4 of itself, and what single precision leaves of 1 - r^2/d^2, and one quantum along each axis.
     const double error = 1e-4 * 0.4 * overlap + 1e-6;
@@ -287,8 +290,7 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
     EXPECT_EQ(pushes[0].z, -pushes[1].z);
     points[1].state = Point::swept;
     std::vector<Point> half(2);
-    base.push_off_neighbours(points.data(), grains.data(), 2, {neighbours.data(), blocks.data(), sizes.data()},
-                             {per_square, 0.2f, 0.4f}, half.data());
+    base.push_off_neighbours(points.data(), pair.grains.data(), 2, pair.lists(), {per_square, 0.2f, 0.4f}, half.data());
     EXPECT_NEAR(half[0].x, 0.5 * pushes[0].x, 1.0) << "the pair's share";
     expect_same({half[1]}, {pushes[1]}, base);
   }
@@ -298,15 +300,7 @@ TEST(KernelsAnalytic, PushesAreSharesOfTheOverlapAlongTheLineOfCentres) {
 /// of centres, all others left alone.
 TEST(KernelsAnalytic, GapsAreClosedByTheirShareOfWhatOverlapsArePushedApartBy) {
   scenes::Draws draws(4);
-  const std::vector<std::uint32_t> neighbours = [] {
-    std::vector<std::uint32_t> both(32, 0);
-    both[0] = 1;
-    return both;
-  }();
-  const std::vector<std::uint32_t> blocks = {0, 1};
-  const std::vector<std::uint8_t> sizes = {1, 1};
-  const std::vector<std::uint32_t> grains = {0, 1, 0, 0, 0, 0, 0, 0, 0, 0};  // and those fetched ahead
-  const spot::kernels::Lists lists = {neighbours.data(), blocks.data(), sizes.data()};
+  const ListedPair pair;
   const double widest = 0.02, share = 0.1;
   const spot::kernels::Gaps gaps = {static_cast<float>((1.0 + widest) * (1.0 + widest) - 1.0),
                                     static_cast<float>(share)};
@@ -325,10 +319,10 @@ TEST(KernelsAnalytic, GapsAreClosedByTheirShareOfWhatOverlapsArePushedApartBy) {
         points[1].state = k % 2 == 0 ? Point::swept : Point::free;
         std::vector<Point> pushes(2);
         if (touching == 1.0)
-          build->push_off_neighbours(points.data(), grains.data(), 2, lists, {per_square, 0.2f, 0.4f, gaps},
+          build->push_off_neighbours(points.data(), pair.grains.data(), 2, pair.lists(), {per_square, 0.2f, 0.4f, gaps},
                                      pushes.data());
         else
-          build->push_off_unequal_neighbours(points.data(), unequal.data(), grains.data(), 2, lists,
+          build->push_off_unequal_neighbours(points.data(), unequal.data(), pair.grains.data(), 2, pair.lists(),
                                              {1.0f, 0.2f, 0.4f, gaps}, pushes.data());
         const double part = gap < widest ? share * (k % 2 == 0 ? 0.2 : 0.4) : 0.0;
         const spot::Vector3 push(pushes[0].x, pushes[0].y, pushes[0].z);
