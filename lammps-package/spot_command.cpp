@@ -213,7 +213,6 @@ const std::map<std::string, Reader>& readers() {
          c.spots.exchange_length = w.positive("the exchange length");
        }},
       {"dilatancy", [](SpotCommand& c, Words& w) { c.spots.dilatancy = w.not_negative("the dilatancy"); }},
-      {"shear", [](SpotCommand& c, Words& w) { c.spots.shear_length = w.not_negative("the shear length"); }},
       {"surface",
        [](SpotCommand& c, Words& w) { c.spots.surface_exponent = w.not_negative("the exponent of the surface"); }},
       {"nonaffine",
@@ -330,7 +329,6 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"dilation", precise(spots.dilation)},
           {"critical", precise(spots.critical_fraction, ' ', spots.exchange_length)},
           {"dilatancy", precise(spots.dilatancy)},
-          {"shear", precise(spots.shear_length)},
           {"surface", precise(spots.surface_exponent)},
           {"nonaffine", precise(spots.nonaffine, ' ', spots.nonaffine_length)},
           {"injection", precise(spots.injection_rate.largest())},

@@ -146,7 +146,7 @@ TEST(SavedRun, OtherVersionsAreRefusedWithAdvice) {
     else
       spot::append(bytes, std::uint64_t{12345});
     EXPECT_THAT(error_of(bytes), AllOf(HasSubstr("of format " + std::to_string(version) + " of fix spot"),
-                                       HasSubstr("knows 8 only"), HasSubstr("give the fix another ID")));
+                                       HasSubstr("knows 9 only"), HasSubstr("give the fix another ID")));
   }
 }
 

@@ -51,7 +51,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
       "accuracy fast momentum 0.3 contact 2e-3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 "
-      "critical 0.58 1.5 dilatancy 0.1 shear 2.5 surface 3 nonaffine 0.14 0.5 peratom yes");
+      "critical 0.58 1.5 dilatancy 0.1 surface 3 nonaffine 0.14 0.5 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
@@ -65,7 +65,6 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.spots.critical_fraction, 0.58);
   EXPECT_EQ(c.spots.exchange_length, 1.5);
   EXPECT_EQ(c.spots.dilatancy, 0.1);
-  EXPECT_EQ(c.spots.shear_length, 2.5);
   EXPECT_EQ(c.spots.surface_exponent, 3.0);
   EXPECT_EQ(c.spots.nonaffine, 0.14);
   EXPECT_EQ(c.spots.nonaffine_length, 0.5);
@@ -233,7 +232,7 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
                     HasSubstr("'every', 'chance', 'spot' and 'global'")));
   for (const std::string keyword : {"accuracy", "steps", "strength", "relax", "relax tol", "relax chance", "threads",
                                     "momentum", "contact", "closing", "closing 0.004", "volume", "critical",
-                                    "critical 0.58", "dilatancy", "shear", "surface", "nonaffine", "nonaffine 0.1"})
+                                    "critical 0.58", "dilatancy", "surface", "nonaffine", "nonaffine 0.1"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -255,17 +254,16 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   EXPECT_THAT(error_of(complete + "closing -4e-3 0.1"),
               AllOf(HasSubstr("'closing' is -0.004"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "closing 4e-3 -1"), AllOf(HasSubstr("'closing' is -1"), HasSubstr("the share")));
-  EXPECT_THAT(error_of(complete + "closing 4e-3 shear 2"), HasSubstr("'shear' is not a finite number"));
+  EXPECT_THAT(error_of(complete + "closing 4e-3 surface 2"), HasSubstr("'surface' is not a finite number"));
   EXPECT_THROW(resolved("closing 0.06 0.1").relaxation.validate(), InvalidParameter);
   EXPECT_THROW(resolved("closing 0.004 1.1").relaxation.validate(), InvalidParameter);
   EXPECT_THAT(error_of(complete + "volume -1"), AllOf(HasSubstr("'volume' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "critical -0.58 1"),
               AllOf(HasSubstr("'critical' is -0.58"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "critical 0.58 0"), AllOf(HasSubstr("'critical' is 0"), HasSubstr("be positive")));
-  EXPECT_THAT(error_of(complete + "critical 0.58 shear 2"), HasSubstr("'shear' is not a finite number"));
+  EXPECT_THAT(error_of(complete + "critical 0.58 surface 2"), HasSubstr("'surface' is not a finite number"));
   EXPECT_THAT(error_of(complete + "dilatancy -1"),
               AllOf(HasSubstr("'dilatancy' is -1"), HasSubstr("zero or positive")));
-  EXPECT_THAT(error_of(complete + "shear -1"), AllOf(HasSubstr("'shear' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "surface -1"), AllOf(HasSubstr("'surface' is -1"), HasSubstr("zero or positive")));
   EXPECT_THROW(resolved("surface 33").spots.validate(), InvalidParameter);
   EXPECT_THAT(error_of(complete + "nonaffine -0.1 1"),
@@ -282,23 +280,21 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
         "volume 77 dilatancy 0.1", "volume 77 critical 0 1 dilatancy 0.1", "volume 77 critical 0.58 1 dilatancy 1.2",
         "volume 77 critical 0.58 1 dilatancy 1e300"})
     EXPECT_THROW(resolved(more).spots.validate(), InvalidParameter) << more;
-  EXPECT_NO_THROW(resolved("volume 77 critical 0.58 1 dilatancy 0.1 shear 2").spots.validate());
+  EXPECT_NO_THROW(resolved("volume 77 critical 0.58 1 dilatancy 0.1").spots.validate());
 }
 
-TEST(SpotCommand, SettingsTellWhatSpotsLeaveAndHowShearNarrowsThem) {
+TEST(SpotCommand, SettingsTellWhatSpotsLeave) {
   const auto settings = [](const std::string& more) {
     std::map<std::string, std::string> all;
     for (const auto& [name, value] : resolved(more).settings()) all[name] = value;
     return all;
   };
-  auto found = settings("volume 77 critical 0.625 1.5 dilatancy 0.125 shear 2.5");
+  auto found = settings("volume 77 critical 0.625 1.5 dilatancy 0.125");
   EXPECT_EQ(found["critical"], "0.625 1.5");
   EXPECT_EQ(found["dilatancy"], "0.125");
-  EXPECT_EQ(found["shear"], "2.5");
   found = settings("");
   EXPECT_EQ(found["critical"], "0 0");
   EXPECT_EQ(found["dilatancy"], "0");
-  EXPECT_EQ(found["shear"], "0");
 }
 
 TEST(SpotCommand, GapsAreClosedOnlyIfAskedFor) {
@@ -356,8 +352,8 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "threads",   "tol",         "chance",
                                                "spot",      "global",      "silo",
                                                "peratom",   "yes",         "no",
-                                               "critical",  "dilatancy",   "shear",
-                                               "surface",   "nonaffine",   "closing"};
+                                               "critical",  "dilatancy",   "surface",
+                                               "nonaffine", "closing"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -378,7 +374,6 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
       EXPECT_GE(command.spots.fixed_volume, 0.0);
       EXPECT_GE(command.spots.critical_fraction, 0.0);
       EXPECT_GE(command.spots.dilatancy, 0.0);
-      EXPECT_GE(command.spots.shear_length, 0.0);
       command.resolve(1.0);
       EXPECT_GT(command.relaxation.tolerance, 0.0);
     } catch (const InvalidParameter& error) {
@@ -466,7 +461,6 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"dilation", in(c.spots.dilation, "")},
       {"critical", in(c.spots.critical_fraction, "")},
       {"dilatancy", in(c.spots.dilatancy, "")},
-      {"shear", in(c.spots.shear_length, "")},
       {"surface", in(c.spots.surface_exponent, "")},
       {"nonaffine", in(c.spots.nonaffine, "")},
       {"steps", c.spots.together ? "together" : "poisson"},

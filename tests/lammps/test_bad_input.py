@@ -73,8 +73,6 @@ def test_missing_keyword(tmp_path, keyword):
     ("dilatancy -1", ["'dilatancy' is -1", "zero or positive"]),
     ("volume 77 dilatancy 0.1", ["dilatancy is 0.1 ", "needs a critical packing fraction"]),
     ("volume 77 critical 0.5 1 dilatancy 1.2", ["dilatancy is 1.2 ", "at most a third of the spot radius"]),
-    ("shear -1", ["'shear' is -1", "zero or positive"]),
-    ("shear 2d", ["'2d' is not a finite number", "'shear'"]),
     ("steps apart", ["'steps apart' is not known", "'poisson' or 'together'"]),
     ("momentum -1", ["'momentum' is -1", "zero or positive"]),
     ("contact -1", ["'contact' is -1", "zero or positive"]),

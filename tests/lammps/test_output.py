@@ -100,7 +100,7 @@ def test_spots_in_dump_local(drained):
 @pytest.mark.parametrize("accuracy", ["normal", "exact"])
 def test_volume_that_spots_have_left(tmp_path, accuracy):
     """Grains' worth of it: w N for each newborn spot's volume that live ones lack. Removed spots take theirs with them."""
-    fix = f"{FIX} accuracy {accuracy} profile uniform radius 2.5 volume 72 critical 0.52 1 dilatancy 0.1 shear 2 dz 0.4"
+    fix = f"{FIX} accuracy {accuracy} profile uniform radius 2.5 volume 72 critical 0.52 1 dilatancy 0.1 dz 0.4"
     after = f"dump_modify grains every 1\nthermo 1\n{DUMP_SPOTS}\ndump_modify spots format float %.12g"
     log = thermo(run_ok(deck(fix=fix, run="run 40", after=after), tmp_path))
     compared = 0

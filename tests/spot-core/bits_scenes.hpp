@@ -99,14 +99,13 @@ class PinnedScenes {
     scene.counts_moves = true;
   }
 
-  /// Spots that leave volume behind, see the surface and whose walk shear narrows, and grains that go ways of their
-  /// own; they climb to where they do so, in a taller filling.
+  /// Spots that leave volume behind and see the surface, and grains that go ways of their own; spots climb to where
+  /// they do so, in a taller filling.
   static void all_ingredients(PinnedScene& scene) {
     all_at_once(scene);
     scene.spots.critical_fraction = 0.54;  // the filling has 0.547
     scene.spots.exchange_length = 1.0;
     scene.spots.dilatancy = 0.2;
-    scene.spots.shear_length = 2.0;
     scene.spots.nonaffine = 0.15;
     scene.spots.nonaffine_length = 0.5;
     scene.spots.surface_exponent = 3.0;

@@ -98,7 +98,6 @@ class PlainDrainage {
     for (const Grain& grain : grains_)
       enclosed += !grain.held && squared(grain.position - move.middle) <= spots_.radius * spots_.radius;
     enclosed *= spot::grain_volume;
-    population_.carry(move, enclosed, *container_);  // or its spots do not know how the flow is sheared
     const double height = move.middle.z() - outlet_;
     if (!critical_.on()) return spot::fixed_volume_weight(spots_, height, enclosed);
     const double volume = volumes_.count(move.spot) > 0 ? volumes_[move.spot] : 1.0;

@@ -26,10 +26,9 @@ using spot::SpotParameters;
 using spot::Vector3;
 
 /// The lattice has their radius as its spacing.
-SpotParameters shearing_spots() {
+SpotParameters wide_spots() {
   SpotParameters spots = scenes::paper_spots();
   spots.radius = 3.0;
-  spots.shear_length = 2.0;
   return spots;
 }
 constexpr double spacing = 3.0;
@@ -58,7 +57,7 @@ void add(FlowField& field, const std::vector<Step>& steps) {
 
 /// A field of these steps, taken in at once.
 FlowField field_of(const std::vector<Step>& steps, const Container& container) {
-  FlowField field(shearing_spots(), container, 1.0);
+  FlowField field(wide_spots(), container, 1.0);
   add(field, steps);
   Alone alone;
   field.update(0.1, alone);
@@ -162,7 +161,7 @@ class PlainFlow {
   }
 
   double flow(const Vector3& node, double now) const {
-    const SpotParameters spots = shearing_spots();
+    const SpotParameters spots = wide_spots();
     const double memory = spot::calibration::climb_of_flow_memory * spots.radius / spots.speed;
     double sum = 0.0;
     for (const auto& [step, time] : steps_) {
@@ -179,7 +178,7 @@ class PlainFlow {
 
 TEST(FlowFieldBruteForce, EqualsTheSumOverAllStepsSinceTheStart) {
   const auto space = scenes::empty_space();
-  FlowField field(shearing_spots(), *space, 1.0);
+  FlowField field(wide_spots(), *space, 1.0);
   PlainFlow plain(*space);
   Alone alone;
   double now = 0.0;
@@ -246,7 +245,7 @@ TEST(FlowFieldAnalytic, WhereSpaceRepeatsTheFieldDoes) {
 TEST(FlowFieldUnit, WhereNoSpotHasBeenNothingIsSheared) {
   const auto silo = scenes::small_silo(6.0, 6.0);
   Alone alone;
-  FlowField field(shearing_spots(), *silo, 1.0);
+  FlowField field(wide_spots(), *silo, 1.0);
   EXPECT_EQ(field.shear({0, 0, 15}), 0.0);
   field.update(1.0, alone);
   EXPECT_EQ(field.shear({0, 0, 15}), 0.0);
@@ -283,7 +282,7 @@ TEST(FlowFieldUnit, OtherWallsLeaveOtherVolumes) {
 /// In one field steps that carry nothing have opened all of it from the start; in the other it grows.
 TEST(FlowFieldInvariance, WhatIsCountedInAGrowingBoxIsKept) {
   const auto space = scenes::empty_space();
-  FlowField large(shearing_spots(), *space, 1.0), growing(shearing_spots(), *space, 1.0);
+  FlowField large(wide_spots(), *space, 1.0), growing(wide_spots(), *space, 1.0);
   Alone alone;
   std::vector<Vector3> ends = {Vector3(-16, 2, -7), Vector3(14, -15, 18), Vector3(0, 16, 3)};
   for (const Vector3& end : ends) large.add(step_at(end), 0.0);
@@ -307,7 +306,7 @@ TEST(FlowFieldInvariance, ASavedFieldComesBackWithStepsThatWereNotTakenIn) {
   add(field, random_steps(100, {-5, -4, 1}, {5, 5, 19}, 2));
   Bytes bytes;
   field.save(bytes);
-  FlowField other(shearing_spots(), *silo, 1.0);
+  FlowField other(wide_spots(), *silo, 1.0);
   ByteReader reader(bytes);
   other.restore(reader);
   EXPECT_TRUE(reader.at_end());
@@ -319,7 +318,7 @@ TEST(FlowFieldInvariance, ASavedFieldComesBackWithStepsThatWereNotTakenIn) {
   expect_same_shear(field, other);
   bytes[0] = static_cast<char>(bytes[0] + 1);  // the first node counted
   ByteReader damaged(bytes);
-  FlowField third(shearing_spots(), *silo, 1.0);
+  FlowField third(wide_spots(), *silo, 1.0);
   EXPECT_THAT(scenes::text_of<spot::InvalidState>([&] { third.restore(damaged); }), testing::HasSubstr("is damaged"));
 }
 
@@ -329,13 +328,13 @@ TEST(FlowFieldInvariance, RanksChangeNothing) {
     return random_steps(200, {-5, -4, 1}, {3, 4, 6.0 + 5.0 * k}, 30 + static_cast<std::uint64_t>(k));
   };
   Alone alone;
-  FlowField one(shearing_spots(), *silo, 1.0);
+  FlowField one(wide_spots(), *silo, 1.0);
   for (int k = 0; k < 3; ++k) {
     add(one, steps_of(k));
     one.update(2.0, alone);
   }
   scenes::on_ranks(3, [&](std::shared_ptr<spot::Communicator> communicator) {
-    FlowField field(shearing_spots(), *silo, 1.0);
+    FlowField field(wide_spots(), *silo, 1.0);
     for (int k = 0; k < 3; ++k) {
       const auto steps = steps_of(k);
       // In the second update all steps are of the last rank.

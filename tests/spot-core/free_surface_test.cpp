@@ -108,7 +108,6 @@ TEST(FreeSurfaceUnit, FarBelowItAllStepsAreAsWithoutIt) {
   const SpotParameters spots = steered_spots(), free = steered_spots(0.0);
   const FreeSurface surface = surface_of(grains_under(0.5, 1), spots, *silo);
   const FreeSurface none = surface_of({}, free, *silo);
-  const spot::FlowField flow(spots, *silo, 1.0);
   const spot::SpotWalk steered(spots, *silo), unsteered(free, *silo);
   EXPECT_FALSE(surface.is_near({0.0, 0.0, -3.0}));
   int different = 0;
@@ -116,8 +115,8 @@ TEST(FreeSurfaceUnit, FarBelowItAllStepsAreAsWithoutIt) {
     spot::Spot one = steered.birth(id, 0.0, *silo), other = unsteered.birth(id, 0.0, *silo);
     for (int step = 0; step < 200; ++step) {
       const bool near = surface.is_near(one.position);
-      steered.step(one, {*silo, flow, surface});
-      unsteered.step(other, {*silo, flow, none});
+      steered.step(one, *silo, surface);
+      unsteered.step(other, *silo, none);
       if (!near && different == 0) {
         EXPECT_EQ(one.position, other.position);
       }
@@ -136,13 +135,12 @@ TEST(FreeSurfaceStatistical, SpotsGoWhereItIsHigher) {
   const auto silo = scenes::small_silo(8.0, 4.0);
   const SpotParameters spots = steered_spots();
   const FreeSurface surface = surface_of(grains_under(0.5, 2, 20000), spots, *silo);
-  const spot::FlowField flow(spots, *silo, 1.0);
   const spot::SpotWalk walk(spots, *silo);
   int up = 0, down = 0;
   for (std::int64_t id = 0; id < 4000; ++id) {
     spot::Spot spot = walk.birth(id, 0.0, *silo);
     spot.position = {0.0, 0.0, 10.0};
-    const spot::Move move = walk.step(spot, {*silo, flow, surface});
+    const spot::Move move = walk.step(spot, *silo, surface);
     up += move.step.x() > 0.0;
     down += move.step.x() < 0.0;
   }

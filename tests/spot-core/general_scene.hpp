@@ -112,7 +112,6 @@ class GeneralScene {
     if (draws.below(2) == 0) spots_.dilation = draws.uniform(0.01, 0.2);
     relaxation_.alpha = draws.uniform(0.5, 1.0);
     if (draws.below(2) == 0) relaxation_.contact_overlap = 1e-3;
-    if (draws.below(2) == 0) spots_.shear_length = d * draws.uniform(0.5, 5.0);
     if (draws.below(2) == 0) spots_.surface_exponent = draws.uniform(0.5, 6.0);
     if (draws.below(2) == 0 && spots_.fixed_volume > 0.0) {
       spots_.critical_fraction = draws.uniform(0.5, 0.7);
@@ -171,8 +170,7 @@ class GeneralScene {
                          repeats_y_ ? ", repeats along y" : "", ", R_s = ", spots_.radius / diameter_,
                          ", w = ", spots_.influence, ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation,
                          ", phi_c = ", spots_.critical_fraction, ", l = ", spots_.exchange_length,
-                         ", a = ", spots_.dilatancy, ", L = ", spots_.shear_length,
-                         ", beta = ", spots_.surface_exponent, ", S = ", spots_.nonaffine);
+                         ", a = ", spots_.dilatancy, ", beta = ", spots_.surface_exponent, ", S = ", spots_.nonaffine);
   }
 
  private:

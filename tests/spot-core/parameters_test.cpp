@@ -114,8 +114,6 @@ TEST(ParametersUnit, WithoutACriticalStateSpotsAreThoseOf2006) {
   const SpotParameters spots;
   EXPECT_EQ(spots.critical_fraction, 0.0);
   EXPECT_EQ(spots.dilatancy, 0.0);
-  EXPECT_EQ(spots.shear_length, 0.0);
-  EXPECT_FALSE(spots.shears());
 }
 
 TEST(ParametersUnit, CriticalPackingFractionsAreThoseOfGrainsInContact) {
@@ -160,7 +158,6 @@ TEST(ParametersUnit, DilatancyIsNotNegativeAndLowersACriticalPackingFraction) {
   for (const double good : {0.0, 0.1, 0.333 * spots.radius}) {
     spots.dilatancy = good;
     EXPECT_NO_THROW(spots.validate());
-    EXPECT_EQ(spots.shears(), good > 0.0);
   }
   for (const double bad : {-0.1, infinity, -infinity, std::nan("")}) {
     spots.dilatancy = bad;
@@ -192,19 +189,6 @@ TEST(ParametersUnit, NonaffineMotionIsUpToHalfTheFallAndHasALength) {
     spots.nonaffine_length = bad;
     EXPECT_THAT(refusal_of(spots),
                 AllOf(HasSubstr("length of non-affine motion is "), HasSubstr("must be positive and finite")));
-  }
-}
-
-TEST(ParametersUnit, ShearLengthIsNotNegative) {
-  SpotParameters spots = scenes::paper_spots();
-  for (const double good : {0.0, 2.0, 1e300}) {
-    spots.shear_length = good;
-    EXPECT_NO_THROW(spots.validate());
-    EXPECT_EQ(spots.shears(), good > 0.0);
-  }
-  for (const double bad : {-0.1, infinity, -infinity, std::nan("")}) {
-    spots.shear_length = bad;
-    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("shear length of spots is "), HasSubstr("zero (off) or positive")));
   }
 }
 

@@ -474,76 +474,6 @@ TEST(SpotsAnalytic, RisingSpotsKeepTheirRadiusFromBaseAndRim) {
   });
 }
 
-/// A flow that grows by the same factor from place to place along x has the same shear everywhere.
-spot::FlowField planted_shear(const SpotParameters& parameters, const Container& container) {
-  spot::FlowField flow(parameters, container, 1.0);
-  const double apart = parameters.radius / 2.0;
-  for (int i = -30; i <= 30; ++i)
-    for (int j = -8; j <= 8; ++j)
-      for (int k = -8; k <= 8; ++k)
-        flow.add({0.0, 0, apart * Vector3(i, j, k), {0.0, 0.0, 0.1}}, std::exp(0.1 * apart * i));
-  spot::Alone alone;
-  flow.update(1.0, alone);
-  return flow;
-}
-
-TEST(SpotsStatistical, ShearLeavesAShareOfStepsSideways) {
-  const auto space = space_above_orifice();
-  for (const double persistence : {0.0, 0.5})
-    for (const double length : {0.0, 1.0, 5.0, 30.0}) {
-      SpotParameters parameters = scenes::paper_spots();
-      parameters.shear_length = length;
-      parameters.persistence = persistence;
-      const spot::FlowField flow = planted_shear(parameters, *space);
-      const spot::FreeSurface surface(parameters, *space, 1.0);
-      const Vector3 place(1.0, 0.5, 0.3);
-      const double shear = flow.shear(place), expected = 1.0 / (1.0 + length * shear);
-      ASSERT_NEAR(shear, 0.1, 0.005);
-      const spot::SpotWalk walk(parameters, *space);
-      const int number = 40000;
-      int sideways = 0;
-      std::vector<int> directions(4);
-      for (std::int64_t id = 0; id < number / 10; ++id) {
-        Spot spot = walk.birth(id, 0.0, *space);
-        for (int step = 0; step < 10; ++step) {
-          spot.position = place;
-          const Move move = walk.step(spot, {*space, flow, surface});
-          EXPECT_NEAR(move.step.z(), parameters.step_height, 1e-12);
-          if (move.step.head<2>().norm() == 0.0) continue;
-          ++sideways;
-          EXPECT_NEAR(move.step.head<2>().norm(), parameters.step_width, 1e-12);
-          const bool along_x = std::abs(move.step.x()) > std::abs(move.step.y());
-          ++directions[(along_x ? 0 : 2) + (move.step.x() + move.step.y() > 0.0 ? 1 : 0)];
-        }
-      }
-      if (length == 0.0) {
-        EXPECT_EQ(sideways, number);
-        continue;
-      }
-      const double error = std::sqrt(expected * (1.0 - expected) / number);
-      // Halfway through steps to all sides shear differs by what whole 256ths of a place make of it.
-      EXPECT_LT(std::abs(sideways / static_cast<double>(number) - expected), bound * error + 1e-3) << length;
-      if (persistence == 0.0) {
-        EXPECT_LT(scenes::deviation_from_equal_counts(directions), bound);
-      }
-    }
-}
-
-/// Whether a step goes sideways is drawn apart: where nothing is sheared, walks are the same with and without.
-TEST(SpotsInvariance, WhereNothingIsShearedWalksAreTheSame) {
-  const auto space = space_above_orifice();
-  const auto walks = [&](double length) {
-    SpotParameters parameters = scenes::paper_spots();
-    parameters.shear_length = length;
-    Spots population(parameters, *space, 1.0);
-    std::map<std::int64_t, std::vector<double>> all;
-    while (const auto move = population.next_step(1.0, *space))  // carries nothing: there is no flow
-      all[move->spot].insert(all[move->spot].end(), {move->time, move->middle.x(), move->middle.y()});
-    return all;
-  };
-  EXPECT_EQ(walks(5.0), walks(0.0));
-}
-
 /// Once in each interval, however the calls lie, and over a saved state.
 TEST(SpotsUnit, TheSurfaceIsFoundWheneverASpotHasClimbedAPartOfItsRadius) {
   const auto space = space_above_orifice();
@@ -632,57 +562,55 @@ TEST(SpotsUnit, ASpotCarriesWhatItHasNotLeft) {
 
 TEST(SpotsUnit, WithoutACriticalStateTheyCarryAsMuchAllTheWay) {
   const auto space = space_above_orifice();
-  for (const double length : {0.0, 2.0}) {
-    SpotParameters parameters = scenes::paper_spots();
-    parameters.fixed_volume = 77.0;
-    parameters.shear_length = length;
-    Spots population(parameters, *space, 1.0);
-    Move move = *population.next_step(1e9, *space);
-    move.middle.z() = 30.0;
-    for (const int grains : {0, 50 * spot::grain_volume, 500 * spot::grain_volume}) {
-      const Spots::Carried carried = population.carry(move, grains, *space);
-      EXPECT_EQ(carried.volume, 1.0);
-      EXPECT_EQ(carried.left, 0);
-    }
+  SpotParameters parameters = scenes::paper_spots();
+  parameters.fixed_volume = 77.0;
+  Spots population(parameters, *space, 1.0);
+  Move move = *population.next_step(1e9, *space);
+  move.middle.z() = 30.0;
+  for (const int grains : {0, 50 * spot::grain_volume, 500 * spot::grain_volume}) {
+    const Spots::Carried carried = population.carry(move, grains, *space);
+    EXPECT_EQ(carried.volume, 1.0);
+    EXPECT_EQ(carried.left, 0);
   }
 }
 
 /// In the order of time, spots learn how the flow is sheared at the times when a spot at v_s has climbed a tenth of R_s
 /// once more; so do those of windows of that length, to the last bit.
-TEST(SpotsInvariance, ShearedWalksOfWindowsAreThoseInTheOrderOfTime) {
+TEST(SpotsInvariance, SpotsOfWindowsLeaveWhatThoseInTheOrderOfTimeDo) {
   const auto space = space_above_orifice();
   SpotParameters parameters = scenes::paper_spots();
-  parameters.shear_length = 10.0;
+  parameters.fixed_volume = 77.0;
+  parameters.critical_fraction = 0.6;
+  parameters.exchange_length = 1.0;
+  parameters.dilatancy = 0.5;
   const double interval = spot::calibration::climb_between_settings * parameters.radius / parameters.speed;
-  const auto record = [](auto& walks, const Move& move) {
-    walks[move.spot].insert(walks[move.spot].end(), {move.time, move.middle.x(), move.middle.y()});
+  const int windows = 60, grains = 85 * spot::grain_volume;
+  using Volumes = std::map<std::int64_t, std::vector<double>>;  // of a spot, move by move
+  const auto carry = [&](Spots& population, const Move& move, Volumes& volumes) {
+    volumes[move.spot].push_back(population.carry(move, grains, *space).volume);
   };
-  std::map<std::int64_t, std::vector<double>> in_order, in_windows, straight;
-  Spots population(parameters, *space, 1.0), windowed(parameters, *space, 1.0);
-  const int windows = 24;
-  while (const auto move = population.next_step(windows * interval, *space)) {
-    record(in_order, *move);
-    population.carry(*move, 0, *space);
-  }
+  const auto in_the_order_of_time = [&] {
+    Volumes volumes;
+    Spots population(parameters, *space, 1.0);
+    while (const auto move = population.next_step(windows * interval, *space)) carry(population, *move, volumes);
+    return volumes;
+  };
+  Volumes in_windows;
+  Spots windowed(parameters, *space, 1.0);
   spot::Alone alone;
-  const auto here = [](const Spot&) { return true; };
   for (int k = 1; k <= windows; ++k) {
     std::vector<Move> all;
-    windowed.give_birth(k * interval, *space, here);
+    windowed.give_birth(k * interval, *space, [](const Spot&) { return true; });
     windowed.step_until(k * interval, *space, [&](const Spot&, const std::vector<Move>& moves) {
       all.insert(all.end(), moves.begin(), moves.end());
     });
-    for (const Move& move : all) {
-      record(in_windows, move);
-      windowed.carry(move, 0, *space);
-    }
+    for (const Move& move : all) carry(windowed, move, in_windows);
     windowed.update_flow(interval, alone);
   }
+  const Volumes in_order = in_the_order_of_time();
   EXPECT_EQ(in_order, in_windows);
-  parameters.shear_length = 0.0;
-  Spots unsheared(parameters, *space, 1.0);
-  while (const auto move = unsheared.next_step(windows * interval, *space)) record(straight, *move);
-  EXPECT_NE(in_order, straight);
+  parameters.dilatancy = 0.0;
+  EXPECT_NE(in_order, in_the_order_of_time());
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ class PlainWindows {
     }
     for (Live& live : live_) {
       while (live.spot.next_step <= until && !live.out)
-        moves_of_window_.emplace_back(walk_.step(live.spot, {*silo_, flow_, surface_}), &live);
+        moves_of_window_.emplace_back(walk_.step(live.spot, *silo_, surface_), &live);
     }
     packing_.draw_tilts(spots_);
     // All are weighed before the first is carried out.
@@ -155,7 +155,7 @@ struct Spots {
   bool together;
   bool parabolic = false;
   double dilation = 0.0;
-  double critical_fraction = 0.0, dilatancy = 0.0, shear_length = 0.0, surface_exponent = 0.0, nonaffine = 0.0;
+  double critical_fraction = 0.0, dilatancy = 0.0, surface_exponent = 0.0, nonaffine = 0.0;
 };
 
 class WindowedDrainageBruteForce : public testing::TestWithParam<Spots> {};
@@ -170,7 +170,6 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   spots.critical_fraction = GetParam().critical_fraction;
   spots.exchange_length = 1.0;
   spots.dilatancy = GetParam().dilatancy;
-  spots.shear_length = GetParam().shear_length;
   spots.surface_exponent = GetParam().surface_exponent;
   spots.nonaffine = GetParam().nonaffine;
   spots.nonaffine_length = 0.05;
@@ -203,10 +202,9 @@ INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
                                          Spots{"FixedVolumeTogether", 77.0, true},
                                          Spots{"CriticalState", 77.0, false, true, 0.0, 0.6},
                                          Spots{"Dilatancy", 77.0, false, true, 0.03, 0.6, 0.1},
-                                         Spots{"Shear", 0.0, false, false, 0.0, 0.0, 0.0, 2.0},
-                                         Spots{"Nonaffine", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2},
-                                         Spots{"Surface", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 3.0},
-                                         Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 2.0, 3.0}),
+                                         Spots{"Nonaffine", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.2},
+                                         Spots{"Surface", 77.0, false, true, 0.0, 0.0, 0.0, 3.0},
+                                         Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 3.0}),
                          [](const auto& spots) { return spots.param.name; });
 
 TEST(WindowedDrainageInvariance, ARerunIsIdentical) {
@@ -504,7 +502,6 @@ TEST(WindowedDrainageStatistical, SpotsLeaveAsMuchVolumeAsWithTheTimeOrderedDriv
   spots.critical_fraction = 0.5;
   spots.exchange_length = 1.0;
   spots.dilatancy = 0.5;
-  spots.shear_length = 2.0;
   spots.seed = 1;
   const auto grains = filling(24.0);
   for (const bool relaxed : {false, true}) {

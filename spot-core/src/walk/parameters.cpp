@@ -46,8 +46,6 @@ void SpotParameters::validate() const {
   if (!(dilation >= 0.0 && dilation < 1.0))
     throw InvalidParameter(message("spot dilation is ", dilation, " but must be from 0 (off) to below 1"));
   validate_critical_state();
-  if (!(shear_length >= 0.0) || !std::isfinite(shear_length))
-    throw InvalidParameter(message("shear length of spots is ", shear_length, " but must be zero (off) or positive"));
   if (!(surface_exponent >= 0.0 && surface_exponent <= calibration::largest_surface_exponent))
     throw InvalidParameter(message("surface exponent is ", surface_exponent, " but must be from 0 (off) to ",
                                    calibration::largest_surface_exponent));

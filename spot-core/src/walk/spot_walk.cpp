@@ -91,35 +91,23 @@ void SpotWalk::set_relative_speed(Spot& spot, double time, double relative_speed
   spot.relative_speed = relative_speed;
 }
 
-/// b_s / (1 + L s): so many of the steps go sideways, the others straight up. The shear halfway decides, so that there
-/// are as many steps one way as the other between two places: sheared places are neither sought nor avoided.
-bool SpotWalk::goes_sideways(const Spot& spot, const Vector3& middle, const FlowField& flow) const {
-  if (parameters_.shear_length == 0.0) return true;
-  const double number = uniform(parameters_.seed, RandomPurpose::sideways, static_cast<std::uint64_t>(spot.id),
-                                static_cast<std::uint64_t>(spot.steps))[0];
-  return number * (1.0 + parameters_.shear_length * flow.shear(middle)) < 1.0;
-}
-
 /// Chooses the direction once more, with the same number, by how much of the spot each would keep below the surface.
-void SpotWalk::steer_by_surface(Spot& spot, const Surroundings& around) const {
+void SpotWalk::steer_by_surface(Spot& spot, const Container& container, const FreeSurface& surface) const {
   std::vector<Vector3> middles;
   for (int k = 0; k < directions; ++k) {
     const Vector3 target = spot.position + step_vector(parameters_, number_of_direction(k));
-    middles.push_back(0.5 * (spot.position + around.container.keep_spot_inside(spot.position, target)));
+    middles.push_back(0.5 * (spot.position + container.keep_spot_inside(spot.position, target)));
   }
-  spot.direction = number_of_direction(static_cast<int>(around.surface.choose(middles, spot.direction)));
+  spot.direction = number_of_direction(static_cast<int>(surface.choose(middles, spot.direction)));
 }
 
-Move SpotWalk::step(Spot& spot, const Surroundings& around) const {
-  const Container& container = around.container;
+Move SpotWalk::step(Spot& spot, const Container& container, const FreeSurface& surface) const {
   Move move;
   move.time = spot.next_step;
   move.spot = spot.id;
   const Vector3 start = spot.position;
-  if (around.surface.steers() && around.surface.is_near(start)) steer_by_surface(spot, around);
-  Vector3 target = start + step_vector(parameters_, spot.direction);
-  if (!goes_sideways(spot, 0.5 * (start + target), around.flow))
-    target = start + Vector3(0.0, 0.0, parameters_.step_height);
+  if (surface.steers() && surface.is_near(start)) steer_by_surface(spot, container, surface);
+  const Vector3 target = start + step_vector(parameters_, spot.direction);
   spot.position = container.keep_spot_inside(start, target);
   // A spot that a wall has reflected goes on away from it, if it goes on its way.
   if (spot.position != target) spot.direction = opposite(spot.direction);

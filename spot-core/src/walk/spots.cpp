@@ -16,7 +16,7 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       dilates_(parameters.dilation > 0.0),
       dilation_(parameters, container, diameter),
       critical_(parameters, diameter),
-      shears_(parameters.shears()),
+      shears_(parameters.dilatancy > 0.0),
       flow_(parameters, container, diameter),
       surface_(parameters, container, diameter),
       surface_interval_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
@@ -57,7 +57,7 @@ void Spots::step_until(double until, const Container& container,
   for (Place& place : places_) {
     if (place.removed) continue;
     moves.clear();
-    while (place.spot.next_step <= until) moves.push_back(walk_.step(place.spot, {container, flow_, surface_}));
+    while (place.spot.next_step <= until) moves.push_back(walk_.step(place.spot, container, surface_));
     if (!moves.empty()) visit(place.spot, moves);
   }
   queued_ = false;
@@ -111,7 +111,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container, co
   std::pop_heap(events_.begin(), events_.end());
   const std::size_t place = events_.back().place;
   events_.pop_back();
-  const Move move = walk_.step(places_[place].spot, {container, flow_, surface_});
+  const Move move = walk_.step(places_[place].spot, container, surface_);
   queue(place);
   return move;
 }
@@ -125,11 +125,10 @@ std::vector<Spots::Place>::iterator Spots::find(std::int64_t spot) {
 
 Spots::Carried Spots::carry(const Move& move, int enclosed, const Container& container) {
   Carried carried;
-  const auto place = critical_.on() || shears_ ? find(move.spot) : places_.end();
+  const auto place = critical_.on() ? find(move.spot) : places_.end();
   if (place == places_.end()) return carried;
   carried.volume = place->spot.volume;
   if (shears_) flow_.add(move, carried.volume);
-  if (!critical_.on()) return carried;
   const double shear = shears_ ? flow_.shear(move.middle) : 0.0;
   place->spot.volume = critical_.volume_after(carried.volume, move, enclosed, shear, container);
   carried.left = static_cast<std::int64_t>((carried.volume - place->spot.volume) * CriticalState::volume_parts);

@@ -12,7 +12,6 @@ enum class RandomPurpose : std::uint64_t {
   step = 2,       ///< when and where to step `step` of spot `id` goes
   settling = 3,   ///< to which side grain `id` rolls in sweep `step`
   fall = 4,       ///< how fast grain `id` falls
-  sideways = 5,   ///< whether step `step` of spot `id` goes sideways, where shear narrows the walk
   nonaffine = 6,  ///< how grain `id` goes against its neighbours in level `step` of its fall
 };
 

@@ -36,8 +36,6 @@ struct SpotParameters {
   double exchange_length = 0.0;
   /// a: shear s for each length that grains fall (FlowField) lowers phi_c by a s, of itself (length). At most R_s / 3.
   double dilatancy = 0.0;
-  /// L: it narrows the walk, to b_s / (1 + L s) (length). 0: the walk does not depend on the flow (2006).
-  double shear_length = 0.0;
   /// beta: near the free surface, how much rather spots go where it is higher (2010's rule, FreeSurface). 0: they do
   /// not care (2006).
   double surface_exponent = 0.0;
@@ -66,9 +64,6 @@ struct SpotParameters {
   /// The grains' own volume that one spot takes out of the packing around it: that of w N grains, with a fixed volume,
   /// or of as many as it encloses at the packing fraction of flow (length^3).
   double missing_volume(double diameter) const;
-
-  /// Do spots have to know how the flow is sheared?
-  bool shears() const { return dilatancy > 0.0 || shear_length > 0.0; }
 
   /// Throws InvalidParameter that names the first number outside its range, or two that exclude each other.
   void validate() const;

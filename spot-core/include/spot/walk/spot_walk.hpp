@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "spot/geometry/container.hpp"
-#include "spot/walk/flow_field.hpp"
 #include "spot/walk/free_surface.hpp"
 #include "spot/walk/move.hpp"
 #include "spot/walk/parameters.hpp"
@@ -21,13 +20,6 @@ struct Spot {
   double chance = 0.0;          ///< another, for whoever draws lots
   double relative_speed = 1.0;  ///< its speed over v_s
   double volume = 1.0;          ///< that it carries, over that of a newborn one (CriticalState)
-};
-
-/// What a step depends on, beside its spot.
-struct Surroundings {
-  const Container& container;
-  const FlowField& flow;
-  const FreeSurface& surface;
 };
 
 /// How spots are born and walk. There is no state but the spot: all draws follow from (seed, spot id, step number). Of
@@ -53,12 +45,11 @@ class SpotWalk {
 
   /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
   /// cell then; the middle of the step need not be.
-  Move step(Spot& spot, const Surroundings& around) const;
+  Move step(Spot& spot, const Container& container, const FreeSurface& surface) const;
 
  private:
   void draw_next_step(Spot& spot) const;
-  bool goes_sideways(const Spot& spot, const Vector3& middle, const FlowField& flow) const;
-  void steer_by_surface(Spot& spot, const Surroundings& around) const;
+  void steer_by_surface(Spot& spot, const Container& container, const FreeSurface& surface) const;
 
   SpotParameters parameters_;
 };

@@ -113,7 +113,7 @@ class Spots {
   bool dilates_;
   DilationField dilation_;
   CriticalState critical_;
-  bool shears_;
+  bool shears_;  // do spots have to know how the flow is sheared?
   FlowField flow_;
   FreeSurface surface_;
   double surface_interval_;
