@@ -492,7 +492,7 @@ TEST(WindowedDrainageStatistical, DrainsAsManyAsTheTimeOrderedDriver) {
 }
 
 /// The same spots, another algorithm. Without relaxation, which makes the two packings differently dense, the ratio is
-/// 0.9993 +- 0.0014 over seeds 1-6; with it 0.980 +- 0.001. The bounds are the mean and some four standard deviations.
+/// 0.9997 +- 0.0006 over seeds 1-6; with it 0.980 +- 0.001. The bounds are the mean and some four standard deviations.
 TEST(WindowedDrainageStatistical, SpotsLeaveAsMuchVolumeAsWithTheTimeOrderedDriver) {
   SpotParameters spots = coarse_spots();
   spots.profile = spot::InfluenceProfile::parabolic;
@@ -519,7 +519,7 @@ TEST(WindowedDrainageStatistical, SpotsLeaveAsMuchVolumeAsWithTheTimeOrderedDriv
       return static_cast<double>(drainage.total().volume_left) / spot::CriticalState::volume_parts;
     };
     EXPECT_GT(left(reference), 200.0) << "of 600 spots";
-    EXPECT_NEAR(left(windowed) / left(reference), relaxed ? 0.98 : 0.9993, relaxed ? 0.01 : 0.006);
+    EXPECT_NEAR(left(windowed) / left(reference), relaxed ? 0.98 : 0.9997, relaxed ? 0.004 : 0.0025);
   }
 }
 
