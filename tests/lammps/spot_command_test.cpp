@@ -414,7 +414,7 @@ TEST(SpotDocumentation, ListsTheKeywords) {
   const std::string syntax = section("Syntax", "Examples");
   std::set<std::string> explained, listed;
   for (const auto& match : matches(syntax, "\n +\\*(\\w+)\\* values? =")) explained.insert(match[1]);
-  const auto list = matches(syntax, "\n\\* keyword = ([^\n]*)");
+  const auto list = matches(syntax, "\n\\* keyword = ([^\n]*(?:\n  [^\n]+)*)");
   ASSERT_EQ(list.size(), 1U);
   const std::string keywords = list[0][1];
   for (const auto& match : matches(keywords, "\\*(\\w+)\\*")) listed.insert(match[1]);
