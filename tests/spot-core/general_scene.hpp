@@ -116,7 +116,7 @@ class GeneralScene {
     if (draws.below(2) == 0 && spots_.fixed_volume > 0.0) {
       spots_.critical_fraction = draws.uniform(0.5, 0.7);
       spots_.exchange_length = spots_.step_height * draws.uniform(0.2, 5.0);
-      if (draws.below(2) == 0) spots_.dilatancy = d * draws.uniform(0.05, 0.5);
+      if (draws.below(2) == 0) spots_.dilatancy = spots_.radius * draws.uniform(0.02, 0.33);
     }
     // Drawn last, so that all else in a scene is as it was before.
     if (draws.below(2) == 0) {
