@@ -239,7 +239,26 @@ def test_bad_data_file(silo, change, message, tmp_path):
     assert message in done.stdout + done.stderr
 
 
+def test_periodic_along_y(tmp_path):
+    scene = {**SCENE, "periodic": 1, "out": tmp_path}
+    run_ok("silo", "in.pour", rest=1e-2, **scene)
+    run_ok("silo", "in.drain", time=4 * TAU, **scene)
+    (_, columns), = read_dump(tmp_path / "drain" / f"drain.{2 * SNAPSHOT}.dump")
+    columns["y"] = columns.pop("yu")
+    x = positions(columns)[columns["z"] > DIAMETER]
+    period = 2 * WALLS[1]
+    wrapped = (x[:, 1] + WALLS[1]) % period - WALLS[1]
+    # No wall holds grains off half a diameter from it, and those at both ends keep off each other across them.
+    assert (np.abs(wrapped) > WALLS[1] - 0.4 * DIAMETER).sum() > 10
+    images = np.concatenate([np.column_stack([x[:, 0], wrapped + shift, x[:, 2]]) for shift in (-period, 0, period)])
+    assert overlaps(images).max() < 0.02
+    for folder in ("pour", "drain"):
+        written = json.loads((tmp_path / folder / "scene.json").read_text())
+        assert written["half_period_y"] == pytest.approx(WALLS[1]) and "half_depth_y" not in written
+
+
 BAD_POURS = [
+    ({"periodic": 2}, "periodic is 2"),
     ({"size": "huge"}, "no size huge"),
     ({"orifice": 9}, "an orifice of 9 d is wider than the base"),
     ({"orifice": 0}, "must be positive"),

@@ -97,6 +97,8 @@ def load_scene(source, scene_file=None, overrides=None):
     path = scene_file or os.path.join(source if os.path.isdir(source) else os.path.dirname(source), FILE_NAME)
     values = _read_json(path) if scene_file or os.path.exists(path) else {}
     values.update({key: value for key, value in (overrides or {}).items() if value is not None})
+    if "half_period_y" in values:
+        raise SceneError(f"{path}: the silo is periodic along y, but the statistics need walls at y = +-half_depth_y")
     for key in NUMBERS:
         if key not in values:
             where = f"in {path}" if os.path.exists(path) else f"(no {path})"
