@@ -157,24 +157,51 @@ void per_sphere(benchmark::State& state, double range, Kernel kernel) {
   state.counters["grains"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
 }
 
-/// A move: the points around its middle; every second round they go back, so that the packing stays.
+/// The places around the middles of moves.
+void per_move(benchmark::State& state,
+              const std::function<std::size_t(const spot::kernels::Places&, const Point&, std::size_t)>& kernel) {
+  constexpr std::size_t lanes = spot::kernels::lanes;
+  const std::size_t blocks = (tiles().points.size() + lanes - 1) / lanes;
+  spot::Coordinates at;
+  for (auto* values : {&at.x, &at.y, &at.z}) values->resize(blocks * lanes);
+  at.state_squared.assign(blocks * lanes, 1e30f);
+  for (std::size_t slot = 0; slot < tiles().points.size(); ++slot) at.set(slot, tiles().points[slot]);
+  std::vector<std::vector<std::uint32_t>> reached;
+  std::vector<Point> centres;
+  for (const Vector3& middle : middles(1024)) {
+    reached.emplace_back();
+    for (const auto& [first, n] : tiles().rows(middle, radius))
+      for (std::size_t block = first / lanes; block * lanes < first + n; ++block)
+        reached.back().push_back(static_cast<std::uint32_t>(block));
+    centres.push_back(tiles().point(middle));
+  }
+  std::size_t turn = 0, found = 0;
+  for (auto _ : state) {
+    const std::size_t move = turn % reached.size(), round = turn / reached.size();
+    found += kernel(
+        {at.x.data(), at.y.data(), at.z.data(), at.state_squared.data(), reached[move].data(), reached[move].size()},
+        centres[move], round);
+    ++turn;
+  }
+  benchmark::DoNotOptimize(found);
+  state.counters["grains"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
+}
+
+/// A move; every second round grains go back, so that the packing stays.
 void displace(benchmark::State& state, const Kernels& kernels) {
-  spot::AlignedVector<Point> points = tiles().points;
   const auto radius_squared = static_cast<float>(radius * radius * quanta * quanta);
-  per_sphere(state, radius, [&](std::uint32_t first, std::uint32_t n, const Point& centre, std::size_t round) {
+  per_move(state, [&](const spot::kernels::Places& places, const Point& centre, std::size_t round) {
     const std::int32_t sign = round % 2 == 0 ? 1 : -1;
-    kernels.displace(points.data() + first, n, centre, {radius_squared, 1.0f / radius_squared},
-                     {sign * 80000, 0, -sign * 33000, 0});
-    return n;
+    kernels.displace(places, centre, {radius_squared, 1.0f / radius_squared}, {sign * 80000, 0, -sign * 33000, 0});
+    return places.count * spot::kernels::lanes;
   });
 }
 
 /// The shares in a move.
 void enclosed_volume(benchmark::State& state, const Kernels& kernels) {
   const auto radius_squared = static_cast<float>(radius * radius * quanta * quanta);
-  per_sphere(state, radius, [&](std::uint32_t first, std::uint32_t n, const Point& centre, std::size_t) {
-    return static_cast<std::size_t>(kernels.enclosed_volume(tiles().points.data() + first, n, centre,
-                                                            {radius_squared, 1.0f / radius_squared})) /
+  per_move(state, [&](const spot::kernels::Places& places, const Point& centre, std::size_t) {
+    return static_cast<std::size_t>(kernels.enclosed_volume(places, centre, {radius_squared, 1.0f / radius_squared})) /
            spot::grain_volume;
   });
 }

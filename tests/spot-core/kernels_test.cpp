@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Every build of the kernels gives the bits of the plain one, and the plain one what its description says.
 #include "packing/kernel_builds.hpp"
+#include "spot/packing/coordinates.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@
 
 namespace {
 
+using spot::NonaffineMotion;
 using spot::Point;
 using spot::kernels::Kernels;
 
@@ -70,6 +72,38 @@ float depth_of(const Point& push) {
   return depth;
 }
 
+/// Points as moves take them, all of them or none within reach.
+struct Places {
+  spot::Coordinates at;
+  spot::Tilts tilts;
+  std::vector<std::uint32_t> blocks;
+
+  explicit Places(const std::vector<Point>& points, const std::vector<NonaffineMotion::Tilt>& of_points = {}) {
+    EXPECT_EQ(points.size() % spot::kernels::lanes, 0u);
+    for (auto* values : {&at.x, &at.y, &at.z}) values->resize(points.size());
+    at.state_squared.resize(points.size());
+    for (auto* values : {&tilts.x, &tilts.y, &tilts.z, &tilts.level}) values->resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) at.set(i, points[i]);
+    for (std::size_t i = 0; i < of_points.size(); ++i) tilts.set(i, of_points[i]);
+    for (std::size_t i = 0; i < points.size(); i += spot::kernels::lanes)
+      blocks.push_back(static_cast<std::uint32_t>(i / spot::kernels::lanes));
+  }
+
+  spot::kernels::Places all() { return some(blocks.size()); }
+  spot::kernels::Places none() { return some(0); }
+  spot::kernels::Places some(std::size_t count) {
+    return {at.x.data(), at.y.data(), at.z.data(), at.state_squared.data(), blocks.data(), count};
+  }
+  spot::kernels::TiltsOfPlaces own() const { return {tilts.x.data(), tilts.y.data(), tilts.z.data()}; }
+
+  /// With the states that the points had.
+  std::vector<Point> points(const std::vector<Point>& before) const {
+    std::vector<Point> now;
+    for (std::size_t i = 0; i < before.size(); ++i) now.push_back(at.at(i, before[i].state));
+    return now;
+  }
+};
+
 constexpr double radius = 2.6 * diameter;
 
 constexpr auto radius_squared = static_cast<float>(radius * radius);
@@ -81,26 +115,26 @@ TEST(KernelsInvariance, DisplacementIsTheSameInEveryBuild) {
     const auto start = points_in_box(400, 6.0, seed);
     const Point middle = point_at({3, 3, 3});
     const spot::Reach reach = seed % 2 == 0 ? uniform : parabolic;
-    const int shares = base.enclosed_volume(start.data(), start.size(), middle, reach);
+    Places plain(start);
+    const int shares = base.enclosed_volume(plain.all(), middle, reach);
     EXPECT_GT(shares, 10 * spot::grain_volume);
-    auto plain = start;
-    base.displace(plain.data(), plain.size(), middle, reach, by);
+    base.displace(plain.all(), middle, reach, by);
     for (const Kernels* build : spot::kernels::runnable()) {
-      auto points = start;
-      EXPECT_EQ(build->enclosed_volume(points.data(), points.size(), middle, reach), shares);
-      EXPECT_EQ(build->enclosed_volume(points.data(), 0, middle, reach), 0);
-      build->displace(points.data(), 0, middle, reach, by);
-      expect_same(points, start, *build);
-      build->displace(points.data(), points.size(), middle, reach, by);
-      expect_same(points, plain, *build);
+      Places places(start);
+      EXPECT_EQ(build->enclosed_volume(places.all(), middle, reach), shares);
+      EXPECT_EQ(build->enclosed_volume(places.none(), middle, reach), 0);
+      build->displace(places.none(), middle, reach, by);
+      expect_same(places.points(start), start, *build);
+      build->displace(places.all(), middle, reach, by);
+      expect_same(places.points(start), plain.points(start), *build);
     }
   }
 }
 
-std::vector<spot::kernels::Tilt> tilts_of(std::size_t n, std::uint64_t seed) {
+std::vector<NonaffineMotion::Tilt> tilts_of(std::size_t n, std::uint64_t seed) {
   scenes::Draws draws(seed);
   const auto draw = [&] { return static_cast<std::int16_t>(static_cast<int>(draws.below(65535)) - 32767); };
-  std::vector<spot::kernels::Tilt> tilts;
+  std::vector<NonaffineMotion::Tilt> tilts;
   for (std::size_t i = 0; i < n; ++i) tilts.push_back({draw(), draw(), draw(), draw()});
   return tilts;
 }
@@ -112,32 +146,30 @@ TEST(KernelsInvariance, TiltedDisplacementIsTheSameInEveryBuild) {
     const auto tilts = tilts_of(start.size(), seed);
     const Point middle = point_at({3, 3, 3});
     const spot::Reach reach = seed % 2 == 0 ? uniform : parabolic;
-    auto plain = start;
-    base.displace_tilted(plain.data(), tilts.data(), plain.size(), middle, reach, by, 3.7f);
+    Places plain(start, tilts);
+    base.displace_tilted(plain.all(), plain.own(), middle, reach, by, 3.7f);
     for (const Kernels* build : spot::kernels::runnable()) {
-      auto points = start;
-      build->displace_tilted(points.data(), tilts.data(), 0, middle, reach, by, 3.7f);
-      expect_same(points, start, *build);
-      build->displace_tilted(points.data(), tilts.data(), points.size(), middle, reach, by, 3.7f);
-      expect_same(points, plain, *build);
+      Places places(start, tilts);
+      build->displace_tilted(places.none(), places.own(), middle, reach, by, 3.7f);
+      expect_same(places.points(start), start, *build);
+      build->displace_tilted(places.all(), places.own(), middle, reach, by, 3.7f);
+      expect_same(places.points(start), plain.points(start), *build);
     }
     // Nobody's own way: as without.
-    base.displace_tilted(plain.data(), tilts.data(), plain.size(), middle, reach, {0, 0, 0, 0}, 0.0f);
-    auto tilted = start, straight = start;
-    base.displace_tilted(tilted.data(), tilts.data(), start.size(), middle, reach, by, 0.0f);
-    base.displace(straight.data(), start.size(), middle, reach, by);
-    expect_same(tilted, straight, base);
+    Places tilted(start, tilts), straight(start);
+    base.displace_tilted(tilted.all(), tilted.own(), middle, reach, by, 0.0f);
+    base.displace(straight.all(), middle, reach, by);
+    expect_same(tilted.points(start), straight.points(start), base);
   }
 }
 
 /// A grain in the middle of a uniform move has all of it and of what its tilt adds.
 TEST(KernelsAnalytic, ATiltAddsToTheMove) {
   for (const Kernels* build : spot::kernels::runnable()) {
-    std::vector<Point> points(spot::kernels::lanes, Point{0, 0, 0, Point::free});
-    std::vector<spot::kernels::Tilt> tilts(points.size(), spot::kernels::Tilt{100, -200, 400, 77});
-    build->displace_tilted(points.data(), tilts.data(), points.size(), {0, 0, 0, Point::free}, uniform,
-                           {10, 20, -3000, 0}, 0.5f);
-    for (const Point& point : points) {
+    const std::vector<Point> start(spot::kernels::lanes, Point{0, 0, 0, Point::free});
+    Places places(start, std::vector<NonaffineMotion::Tilt>(start.size(), {100, -200, 400, 77}));
+    build->displace_tilted(places.all(), places.own(), {0, 0, 0, Point::free}, uniform, {10, 20, -3000, 0}, 0.5f);
+    for (const Point& point : places.points(start)) {
       EXPECT_EQ(point.x, 10 + 50);
       EXPECT_EQ(point.y, 20 - 100);
       EXPECT_EQ(point.z, -3000 + 200);
@@ -150,9 +182,10 @@ TEST(KernelsAnalytic, ATiltAddsToTheMove) {
 TEST(KernelsUnit, DisplacementMovesFreePointsInsideTheSphere) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto start = points_in_box(400, 6.0, seed);
-    auto points = start;
+    Places places(start);
     const Point middle = point_at({3, 3, 3});
-    base.displace(points.data(), points.size(), middle, uniform, {17, -5, 3, 0});
+    base.displace(places.all(), middle, uniform, {17, -5, 3, 0});
+    const auto points = places.points(start);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double part = squared_distance(start[i], middle) / (radius * radius);
       if (std::abs(part - 1.0) < 1e-6) continue;
@@ -166,9 +199,11 @@ TEST(KernelsUnit, DisplacementMovesFreePointsInsideTheSphere) {
 
 TEST(KernelsAnalytic, ParabolicSharesFallWithTheSquareOfTheDistance) {
   const auto start = points_in_box(400, 6.0, 3);
-  auto points = start;
+  Places places(start);
   const Point middle = point_at({3, 3, 3});
-  base.displace(points.data(), points.size(), middle, parabolic, {0, 0, -1000000, 0});
+  const int enclosed = base.enclosed_volume(places.all(), middle, parabolic);
+  base.displace(places.all(), middle, parabolic, {0, 0, -1000000, 0});
+  const auto points = places.points(start);
   double sum = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double part = squared_distance(start[i], middle) / (radius * radius);
@@ -176,20 +211,19 @@ TEST(KernelsAnalytic, ParabolicSharesFallWithTheSquareOfTheDistance) {
     EXPECT_NEAR(static_cast<double>(points[i].z) - start[i].z, -1e6 * share, 1.5) << i;
     sum += share;
   }
-  EXPECT_NEAR(base.enclosed_volume(start.data(), start.size(), middle, parabolic), sum * spot::grain_volume,
-              0.5 * sum + 200.0);
+  EXPECT_NEAR(enclosed, sum * spot::grain_volume, 0.5 * sum + 200.0);
 }
 
 /// Neither empty places nor held grains are ever in reach, wherever they are and however small a diameter is.
 TEST(KernelsUnit, DisplacementLeavesHeldAndEmptyPlacesAlone) {
   const auto largest = static_cast<float>(8.0 * diameter * 8.0 * diameter);
   for (const Kernels* build : spot::kernels::runnable()) {
-    std::vector<Point> points(8, {0, 0, 0, Point::held});
+    std::vector<Point> points(spot::kernels::lanes, {0, 0, 0, Point::held});
     points[3] = points[6] = nobody;
-    const auto before = points;
-    EXPECT_EQ(build->enclosed_volume(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}), 0);
-    build->displace(points.data(), points.size(), {0, 0, 0, Point::free}, {largest, 1.0f}, {1, 1, 1, 0});
-    expect_same(points, before, *build);
+    Places places(points);
+    EXPECT_EQ(build->enclosed_volume(places.all(), {0, 0, 0, Point::free}, {largest, 1.0f}), 0);
+    build->displace(places.all(), {0, 0, 0, Point::free}, {largest, 1.0f}, {1, 1, 1, 0});
+    expect_same(places.points(points), points, *build);
   }
 }
 

@@ -70,7 +70,9 @@ const std::vector<int>& BlockMoves::find(const std::vector<Move>& moves, const S
   if (motion.on()) cells_.give_tilts();
   workers.run([&](int worker) {
     Part& part = parts_[static_cast<std::size_t>(worker)];
-    find(part, moves, spots.radius);
+    find_rows(part, moves, spots.radius);
+    take_places(part);
+    count_enclosed(part);
     if (motion.on()) update_tilts(part, motion);
   });
   for (std::size_t layer = 0; layer < work.size(); ++layer) work[layer] += cells_reached_[layer];
@@ -99,56 +101,90 @@ void BlockMoves::find_rows_of_images(Part& part, const Vector3& middle, double r
     }
 }
 
-/// Of the image of a move that reaches a row.
-Point BlockMoves::middle(const Part& part, std::size_t move, std::size_t row) const {
-  Point middle = middles_[move];
-  add(middle, part.shifts[row]);
-  return middle;
+/// Calls visit(block) for the blocks of slots that a row of cells is in. What else is in these is in nobody's reach.
+template <typename Visit>
+void BlockMoves::visit_blocks(const CellRow& row, const Visit& visit) const {
+  if (row.first >= row.last) return;
+  const std::uint32_t end = (cells_.first_slot(row.last) + kernels::lanes - 1) / kernels::lanes;
+  for (std::uint32_t block = cells_.first_slot(row.first) / kernels::lanes; block < end; ++block) visit(block);
 }
 
-/// The rows of cells that the moves may reach, and the enclosed of the grains there.
-void BlockMoves::find(Part& part, const std::vector<Move>& moves, double radius) {
+/// Calls visit(places, middle) for all images of a move, with the places that it may reach.
+template <typename Visit>
+void BlockMoves::visit_images(Part& part, std::size_t move, const Visit& visit) {
+  Coordinates& of = cells_.coordinates;
+  const auto same_image = [&](std::size_t a, std::size_t b) {
+    return part.shifts.empty() || (part.shifts[a].x == part.shifts[b].x && part.shifts[a].y == part.shifts[b].y);
+  };
+  for (std::size_t row = part.first_row(move), end = part.end_of_rows[move]; row < end;) {
+    const std::size_t first = row;
+    part.blocks.clear();
+    for (; row < end && same_image(first, row); ++row)
+      visit_blocks(part.rows[row], [&](std::uint32_t block) { part.blocks.push_back(block); });
+    Point middle = middles_[move];
+    if (!part.shifts.empty()) add(middle, part.shifts[first]);
+    visit({of.x.data(), of.y.data(), of.z.data(), of.state_squared.data(), part.blocks.data(), part.blocks.size()},
+          middle);
+  }
+}
+
+void BlockMoves::find_rows(Part& part, const std::vector<Move>& moves, double radius) {
   const CellLattice& lattice = cells_.lattice();
   const double reach = BlockMoves::reach(radius, lattice);
   part.rows.clear();
   part.shifts.clear();
   part.end_of_rows.clear();
-  part.enclosed.clear();
-  for (std::size_t m = 0; m < moves.size(); ++m) {
+  const auto layers = static_cast<std::uint32_t>(part.last_layer - part.first_layer);
+  part.reached.assign(layers * (lattice.cells_in_layer() / lattice.cells_in_row()), {cells_.count(), 0});
+  for (const Move& move : moves) {
     const std::size_t before = part.rows.size();
-    const Vector3 from_low = moves[m].middle - lattice.low();
+    const Vector3 from_low = move.middle - lattice.low();
     if (lattice.periodic().any())
       find_rows_of_images(part, from_low, reach);
     else
       lattice.find_rows(from_low, reach, part.first_layer, part.last_layer, false, part.rows);
-    int enclosed = 0;
-    for (std::size_t r = before; r < part.rows.size(); ++r) {
-      const CellRow& row = part.rows[r];
-      const std::uint32_t first = cells_.first_slot(row.first), n = cells_.first_slot(row.last) - first;
-      const Point middle = part.shifts.empty() ? middles_[m] : this->middle(part, m, r);
-      const Point* points = cells_.points.data() + first;
-      enclosed += cells_.unequal()
-                      ? kernels_.enclosed_volume_of_unequal(points, cells_.sizes.data() + first, n, middle, reach_)
-                      : kernels_.enclosed_volume(points, n, middle, reach_);
-      cells_reached_[cells_.layer_of(row.first)] += row.last - row.first;
-    }
     part.end_of_rows.push_back(part.rows.size());
+    for (std::size_t r = before; r < part.rows.size(); ++r) add_reached(part, part.rows[r]);
+  }
+}
+
+void BlockMoves::add_reached(Part& part, const CellRow& row) const {
+  const CellLattice& lattice = cells_.lattice();
+  CellRow& reached = part.reached[(row.first - lattice.first_cell_of(part.first_layer)) / lattice.cells_in_row()];
+  reached = {std::min(reached.first, row.first), std::max(reached.last, row.last)};
+}
+
+void BlockMoves::take_places(const Part& part) {
+  for (const CellRow& row : part.reached)
+    visit_blocks(row, [&](std::uint32_t block) {
+      for (std::uint32_t slot = block * kernels::lanes; slot < (block + 1) * kernels::lanes; ++slot)
+        cells_.coordinates.set(slot, cells_.is_image(cells_.cell_of(slot)) ? nobody : cells_.points[slot]);
+    });
+}
+
+void BlockMoves::count_enclosed(Part& part) {
+  part.enclosed.clear();
+  for (std::size_t m = 0; m < middles_.size(); ++m) {
+    int enclosed = 0;
+    visit_images(part, m, [&](const kernels::Places& places, const Point& middle) {
+      enclosed += cells_.unequal() ? kernels_.enclosed_volume_of_unequal(places, cells_.sizes.data(), middle, reach_)
+                                   : kernels_.enclosed_volume(places, middle, reach_);
+    });
     part.enclosed.push_back(enclosed);
   }
 }
 
-/// Of all grains between the first and the last cell that moves may reach: there are hardly any that they don't.
+/// Of all grains that moves may reach.
 void BlockMoves::update_tilts(const Part& part, const NonaffineMotion& motion) {
-  if (part.rows.empty()) return;
-  std::uint32_t first = part.rows.front().first, last = part.rows.front().last;
-  for (const CellRow& row : part.rows) {
-    first = std::min(first, row.first);
-    last = std::max(last, row.last);
-  }
-  for (std::uint32_t cell = first; cell < last; ++cell)
-    cells_.visit(cell, cell + 1, [&](std::uint32_t slot) {
-      motion.update(cells_.tilts[slot], cells_.ids[slot], cells_.position(slot).z());
-    });
+  for (const CellRow& row : part.reached)
+    for (std::uint32_t cell = row.first; cell < row.last; ++cell) {
+      const Cell listed_in = cells_.lattice().cell(cell);
+      cells_.visit(cell, cell + 1, [&](std::uint32_t slot) {
+        const Vector3 at = cells_.lattice().low() + cells_.lattice().from_low(cells_.points[slot], listed_in);
+        NonaffineMotion::Tilt tilt = cells_.tilts[slot];
+        if (motion.update(tilt, cells_.ids[slot], at.z())) cells_.tilts.set(slot, tilt);
+      });
+    }
 }
 
 void BlockMoves::weigh(const std::vector<Move>& moves, const SpotParameters& spots) {
@@ -210,43 +246,56 @@ void BlockMoves::apply(std::size_t first, std::size_t end, Workers& workers, Mov
 void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool count) {
   for (; part.counted > end; --part.counted)
     part.visit_cells(part.counted - 1, [&](std::uint32_t cell) { cells_.drift[cell] -= lengths_[part.counted - 1]; });
-  std::vector<std::uint32_t> found;
   for (std::size_t m = first; m < end; ++m) {
     part.visit_cells(m, [&](std::uint32_t cell) {
       cells_.unrelaxed[cell] = std::min(cells_.unrelaxed[cell] + Cells::parts_of_move, most_unrelaxed);
     });
-    for (std::size_t r = part.first_row(m); r < part.end_of_rows[m]; ++r) {
-      const std::uint32_t slot = cells_.first_slot(part.rows[r].first), n = cells_.first_slot(part.rows[r].last) - slot;
-      const Point middle = part.shifts.empty() ? middles_[m] : this->middle(part, m, r);
-      if (count) count_received(slot, n, middle, found);
-      displace(slot, n, middle, m);
-    }
+    visit_images(part, m, [&](const kernels::Places& places, const Point& middle) {
+      if (count) count_received(places, middle);
+      displace(places, middle, m);
+    });
   }
 }
 
-void BlockMoves::displace(std::uint32_t first, std::uint32_t n, const Point& middle, std::size_t move) {
-  Point* points = cells_.points.data() + first;
+void BlockMoves::displace(const kernels::Places& places, const Point& middle, std::size_t move) const {
   const Point& step = steps_[move];
   if (cells_.tilted())
-    kernels_.displace_tilted(points, cells_.tilts.data() + first, n, middle, reach_, step,
-                             tilt_unit_ * static_cast<float>(std::abs(step.z)));
+    kernels_.displace_tilted(places, {cells_.tilts.x.data(), cells_.tilts.y.data(), cells_.tilts.z.data()}, middle,
+                             reach_, step, tilt_unit_ * static_cast<float>(std::abs(step.z)));
   else
-    kernels_.displace(points, n, middle, reach_, step);
+    kernels_.displace(places, middle, reach_, step);
 }
 
-/// Counts a move for the grains that it is about to move, of n slots.
-void BlockMoves::count_received(std::uint32_t first, std::uint32_t n, const Point& middle,
-                                std::vector<std::uint32_t>& found) {
-  if (found.size() < n) found.resize(n);
-  const std::size_t within =
-      kernels_.find_within(cells_.points.data() + first, n, middle, reach_.radius_squared, first, found.data());
-  for (std::size_t k = 0; k < within; ++k)
-    if (cells_.points[found[k]].state == Point::free) ++received_[found[k]];
+/// Counts a move for the grains that it is about to move.
+void BlockMoves::count_received(const kernels::Places& places, const Point& middle) {
+  for (std::size_t k = 0; k < places.count; ++k)
+    for (std::uint32_t slot = places.blocks[k] * kernels::lanes, end = slot + kernels::lanes; slot < end; ++slot) {
+      const auto square_of = [](std::int32_t at, std::int32_t from) {
+        const auto apart = static_cast<float>(minus(at, from));
+        return apart * apart;
+      };
+      const float squared = (square_of(places.x[slot], middle.x) + square_of(places.y[slot], middle.y)) +
+                            square_of(places.z[slot], middle.z);
+      if (places.state_squared[slot] == 0.0f && squared <= reach_.radius_squared) ++received_[slot];
+    }
+}
+
+void BlockMoves::write_back(std::uint32_t cell) {
+  for (std::uint32_t slot = cells_.first_slot(cell); slot < cells_.end_slot(cell); ++slot)
+    cells_.points[slot] = cells_.coordinates.at(slot, cells_.points[slot].state);
+}
+
+void BlockMoves::write_back(Workers& workers) {
+  workers.run([&](int worker) {
+    for (const CellRow& row : parts_[static_cast<std::size_t>(worker)].reached)
+      for (std::uint32_t cell = row.first; cell < row.last; ++cell) write_back(cell);
+  });
 }
 
 std::size_t BlockMoves::memory() const {
   std::size_t bytes = bytes_in(lengths_, parts_, cells_reached_, middles_, steps_, enclosed_, received_);
-  for (const Part& part : parts_) bytes += bytes_in(part.rows, part.shifts, part.end_of_rows, part.enclosed);
+  for (const Part& part : parts_)
+    bytes += bytes_in(part.rows, part.shifts, part.end_of_rows, part.reached, part.enclosed);
   return bytes;
 }
 

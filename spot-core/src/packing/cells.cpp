@@ -22,21 +22,49 @@ void require_countable(double slots, std::uint32_t cells) {
                                  ": the packing has collapsed, or is too large"));
 }
 
-constexpr NonaffineMotion::Tilt no_tilt = {0, 0, 0, 0};
+/// Where the slots of a cell end that need to go so far.
+std::uint32_t end_of(const CellLattice& lattice, std::uint32_t cell, std::uint32_t least) {
+  const bool last_in_row = (cell + 1) % lattice.cells_in_row() == 0;
+  return last_in_row ? (least + kernels::lanes - 1) / kernels::lanes * kernels::lanes : least;
+}
+
+/// Of each slot. `first_slot`: of each cell, and the end of the last.
+std::vector<std::uint32_t> cells_of_slots(const std::vector<std::uint32_t>& first_slot) {
+  std::vector<std::uint32_t> cells;
+  for (std::uint32_t cell = 0; cell + 1 < first_slot.size(); ++cell) cells.resize(first_slot[cell + 1], cell);
+  return cells;
+}
+
+/// Calls change(values, empty) for all arrays, with what empty slots have.
+template <typename Change>
+void change_all(Coordinates& coordinates, const Change& change) {
+  change(coordinates.x, nobody.x);
+  change(coordinates.y, nobody.y);
+  change(coordinates.z, nobody.z);
+  change(coordinates.state_squared, static_cast<float>(nobody.state) * static_cast<float>(nobody.state));
+}
+
+template <typename Change>
+void change_all(Tilts& tilts, const Change& change) {
+  for (auto* values : {&tilts.x, &tilts.y, &tilts.z, &tilts.level}) change(*values, std::int16_t{0});
+}
 
 }  // namespace
 
 void Cells::hold(const Slabs& slabs, int rank) {
-  hold_layers(slabs, rank, std::numeric_limits<std::uint32_t>::max() / (first_room * kernels::lanes));
-  const std::uint32_t n = count(), slots = n * first_room;
+  hold_layers(slabs, rank, std::numeric_limits<std::uint32_t>::max() / (2 * first_room * kernels::lanes));
+  const std::uint32_t n = count();
   first_slot_.resize(n + 1);
-  cell_of_.resize(slots);
-  for (std::uint32_t cell = 0; cell <= n; ++cell) first_slot_[cell] = cell * first_room;
-  for (std::uint32_t slot = 0; slot < slots; ++slot) cell_of_[slot] = slot / first_room;
+  for (std::uint32_t cell = 0; cell < n; ++cell)
+    first_slot_[cell + 1] = end_of(lattice(), cell, first_slot_[cell] + first_room);
+  const std::uint32_t slots = first_slot_.back();
+  cell_of_ = cells_of_slots(first_slot_);
   points.assign(slots, nobody);
   references.assign(slots, nobody);
   corrections.assign(slots, {0, 0, 0, 0});
-  if (tilted_) tilts.assign(slots, no_tilt);
+  const auto empty_all = [&](auto& values, auto empty) { values.assign(slots, empty); };
+  change_all(coordinates, empty_all);
+  if (tilted_) change_all(tilts, empty_all);
   ids.assign(slots, -1);
   if (unequal_) sizes.assign(slots, size_of(0.5 * lattice().diameter()));
   unrelaxed.assign(n, 0);
@@ -63,7 +91,7 @@ void Cells::allow_unequal() {
 void Cells::give_tilts() {
   if (tilted_) return;
   tilted_ = true;
-  tilts.assign(slots(), no_tilt);
+  change_all(tilts, [&](auto& values, auto empty) { values.assign(slots(), empty); });
 }
 
 // ---- slots
@@ -83,19 +111,18 @@ void Cells::ensure_place(const Place& place) {
 /// More room for a cell, and for all others that have none left: soon they will need it, too.
 void Cells::give_room(std::uint32_t cell) {
   std::vector<std::uint32_t> first(first_slot_.size()), now(slots());
-  std::uint64_t end = 0;
+  std::uint32_t end = 0;
   for (std::uint32_t c = 0; c < count(); ++c) {
-    first[c] = static_cast<std::uint32_t>(end);
+    first[c] = end;
     bool full = true;
     for (std::uint32_t slot = first_slot(c); slot < end_slot(c); ++slot) {
       now[slot] = first[c] + slot - first_slot(c);
       full = full && occupied(slot);
     }
-    end += end_slot(c) - first_slot(c) + (full || c == cell ? kernels::pack : 0);
+    end = end_of(lattice(), c, end + end_slot(c) - first_slot(c) + (full || c == cell ? kernels::pack : 0));
     require_countable(static_cast<double>(end), count());
   }
-  const auto slots = static_cast<std::uint32_t>(end);
-  first.back() = slots;
+  const std::uint32_t slots = first.back() = end;
   const auto spread = [&](auto& values, const auto& empty) {
     auto old = std::move(values);
     values.assign(slots, empty);
@@ -104,22 +131,22 @@ void Cells::give_room(std::uint32_t cell) {
   spread(points, nobody);
   spread(references, nobody);
   spread(corrections, Point{0, 0, 0, 0});
-  if (tilted_) spread(tilts, no_tilt);
+  change_all(coordinates, spread);
+  if (tilted_) change_all(tilts, spread);
   spread(ids, std::int64_t{-1});
   if (unequal_) spread(sizes, size_of(0.5 * lattice().diameter()));
   first_slot_ = std::move(first);
-  cell_of_.resize(slots);
-  for (std::uint32_t c = 0; c < count(); ++c)
-    std::fill(cell_of_.begin() + first_slot(c), cell_of_.begin() + end_slot(c), c);
+  cell_of_ = cells_of_slots(first_slot_);
   for (SlotData* data : attached_) data->renumber(now, slots);
 }
 
 void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, const Point& reference, double radius) {
   ids[slot] = id;
   points[slot] = point;
+  coordinates.set(slot, is_image(cell_of(slot)) ? nobody : point);
   references[slot] = reference;
   corrections[slot] = {0, 0, 0, 0};
-  if (tilted_) tilts[slot] = no_tilt;
+  if (tilted_) tilts.set(slot, {0, 0, 0, 0});
   if (unequal_) sizes[slot] = size_of(radius);
   note_change(slot);
   if (!own(cell_of(slot))) return;
@@ -129,12 +156,13 @@ void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, cons
 
 void Cells::follow(std::uint32_t slot, std::uint32_t from) {
   corrections[slot] = corrections[from];
-  if (tilted_) tilts[slot] = tilts[from];
+  if (tilted_) tilts.set(slot, tilts[from]);
 }
 
 void Cells::vacate(std::uint32_t slot) {
   ids[slot] = -1;
   points[slot] = references[slot] = nobody;
+  coordinates.set(slot, nobody);
   if (own(cell_of(slot))) --size_;
   note_change(slot);
 }
@@ -165,8 +193,9 @@ std::vector<std::int64_t> Cells::grains_in_own_layers() const {
 }
 
 std::size_t Cells::memory() const {
-  return bytes_in(points, references, corrections, tilts, ids, sizes, unrelaxed, drift, in_motion, first_slot_,
-                  cell_of_, changed_[0], changed_[1], changed_in_images_);
+  return bytes_in(points, references, corrections, coordinates.x, coordinates.y, coordinates.z,
+                  coordinates.state_squared, tilts.x, tilts.y, tilts.z, tilts.level, ids, sizes, unrelaxed, drift,
+                  in_motion, first_slot_, cell_of_, changed_[0], changed_[1], changed_in_images_);
 }
 
 }  // namespace spot

@@ -63,7 +63,7 @@ void GhostLayers::exchange_migrants(const Container& container) {
       const std::uint32_t at = cells_.slot(place);
       cells_.occupy(at, migrant.id, migrant.point, migrant.point, migrant.radius);
       cells_.corrections[at] = migrant.correction;
-      if (cells_.tilted()) cells_.tilts[at] = migrant.tilt;
+      if (cells_.tilted()) cells_.tilts.set(at, migrant.tilt);
       lists_.list(at, container);
     }
 }

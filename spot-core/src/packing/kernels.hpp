@@ -5,11 +5,20 @@
 #include <cstdint>
 
 #include "spot/packing/point.hpp"
-#include "spot/walk/nonaffine_motion.hpp"
 
 namespace spot::kernels {
 
-using Tilt = NonaffineMotion::Tilt;
+/// The grains that a move may displace: Coordinates, and `lanes` slots from each multiple of that in a list.
+struct Places {
+  std::int32_t *x, *y, *z;
+  const float* state_squared;
+  const std::uint32_t* blocks;  ///< slots over `lanes`
+  std::size_t count;            ///< of these
+};
+/// Tilts of all slots.
+struct TiltsOfPlaces {
+  const std::int16_t *x, *y, *z;
+};
 
 /// Kernels work on whole packs of points: numbers of points given to them, except grains to be pushed, are multiples of
 /// this, and neighbour lists have room for a multiple of `lanes`.
@@ -54,14 +63,14 @@ struct UnequalPush {
 struct Kernels {
   const char* instruction_set;
 
-  /// The shares of the points in a move around `middle`, together, each cut to whole parts (grain_volume).
-  int (*enclosed_volume)(const Point* points, std::size_t n, const Point& middle, const Reach& reach);
+  /// The shares of the places in a move around `middle`, together, each cut to whole parts (grain_volume).
+  int (*enclosed_volume)(const Places& places, const Point& middle, const Reach& reach);
 
-  /// Adds to every point its share of `by`, cut to whole quanta.
-  void (*displace)(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by);
+  /// Adds to every place its share of `by`, cut to whole quanta.
+  void (*displace)(const Places& places, const Point& middle, const Reach& reach, const Point& by);
 
-  /// The same with a tilt for each point: its share of `by` + `unit` tilt.
-  void (*displace_tilted)(Point* points, const Tilt* tilts, std::size_t n, const Point& middle, const Reach& reach,
+  /// The same with a tilt for each: its share of `by` + `unit` tilt.
+  void (*displace_tilted)(const Places& places, const TiltsOfPlaces& tilts, const Point& middle, const Reach& reach,
                           const Point& by, float unit);
 
   /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
@@ -73,7 +82,7 @@ struct Kernels {
                               const Push& push, Point* pushes);
 
   /// The same two of unequal grains, where each has its own radius and counts by its own volume.
-  int (*enclosed_volume_of_unequal)(const Point* points, const GrainSize* sizes, std::size_t n, const Point& middle,
+  int (*enclosed_volume_of_unequal)(const Places& places, const GrainSize* sizes, const Point& middle,
                                     const Reach& reach);
   void (*push_off_unequal_neighbours)(const Point* points, const GrainSize* sizes, const std::uint32_t* grains,
                                       std::size_t n, const Lists& lists, const UnequalPush& push, Point* pushes);

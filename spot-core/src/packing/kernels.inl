@@ -13,7 +13,8 @@ using spot::Reach;
 using spot::kernels::ahead;
 using spot::kernels::Gaps;
 using spot::kernels::Lists;
-using spot::kernels::Tilt;
+using spot::kernels::Places;
+using spot::kernels::TiltsOfPlaces;
 
 /// Of a whole share.
 constexpr float parts = spot::grain_volume;
@@ -38,8 +39,10 @@ inline void add(Point& point, std::int32_t x, std::int32_t y, std::int32_t z) {
   point.z += z;
 }
 
-inline float share(const Point& point, const Point& middle, const Reach& reach) {
-  const float linear = (reach.radius_squared - square_distance(point, middle, -1)) * reach.per_square;
+inline float share(const Places& places, std::size_t i, const Point& middle, const Reach& reach) {
+  const float squared = (square(places.x[i] - middle.x) + square(places.y[i] - middle.y)) +
+                        (square(places.z[i] - middle.z) + places.state_squared[i]);
+  const float linear = (reach.radius_squared - squared) * reach.per_square;
   return linear > 0.0f ? linear < 1.0f ? linear : 1.0f : 0.0f;
 }
 
@@ -109,40 +112,51 @@ void push_off_unequal_neighbours(const Point* points, const spot::GrainSize* siz
     push_off<GapsStay>(points, grains, n, lists, push, radii, pushes);
 }
 
-int enclosed_volume_of_unequal(const Point* points, const spot::GrainSize* sizes, std::size_t n, const Point& middle,
+/// Calls visit(slot) for all places.
+template <typename Visit>
+inline void visit_slots(const Places& places, const Visit& visit) {
+  for (std::size_t k = 0; k < places.count; ++k) {
+    const std::size_t first = static_cast<std::size_t>(places.blocks[k]) * spot::kernels::lanes;
+    for (std::size_t slot = first; slot < first + spot::kernels::lanes; ++slot) visit(slot);
+  }
+}
+
+int enclosed_volume_of_unequal(const Places& places, const spot::GrainSize* sizes, const Point& middle,
                                const Reach& reach) {
   int enclosed = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    enclosed += static_cast<int>(share(points[i], middle, reach) * sizes[i].volume);
+  visit_slots(places, [&](std::size_t i) {
+    enclosed += static_cast<int>(share(places, i, middle, reach) * sizes[i].volume);
+  });
   return enclosed;
 }
 
 #ifndef __AVX2__
 
-int enclosed_volume(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
+int enclosed_volume(const Places& places, const Point& middle, const Reach& reach) {
   int shares = 0;
-  for (std::size_t i = 0; i < n; ++i) shares += static_cast<int>(share(points[i], middle, reach) * parts);
+  visit_slots(places, [&](std::size_t i) { shares += static_cast<int>(share(places, i, middle, reach) * parts); });
   return shares;
 }
 
-void displace(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by) {
+void displace(const Places& places, const Point& middle, const Reach& reach, const Point& by) {
   const float x = static_cast<float>(by.x), y = static_cast<float>(by.y), z = static_cast<float>(by.z);
-  for (std::size_t i = 0; i < n; ++i) {
-    const float part = share(points[i], middle, reach);
-    add(points[i], static_cast<std::int32_t>(part * x), static_cast<std::int32_t>(part * y),
-        static_cast<std::int32_t>(part * z));
-  }
+  visit_slots(places, [&](std::size_t i) {
+    const float part = share(places, i, middle, reach);
+    places.x[i] += static_cast<std::int32_t>(part * x);
+    places.y[i] += static_cast<std::int32_t>(part * y);
+    places.z[i] += static_cast<std::int32_t>(part * z);
+  });
 }
 
-void displace_tilted(Point* points, const Tilt* tilts, std::size_t n, const Point& middle, const Reach& reach,
+void displace_tilted(const Places& places, const TiltsOfPlaces& tilts, const Point& middle, const Reach& reach,
                      const Point& by, float unit) {
   const float x = static_cast<float>(by.x), y = static_cast<float>(by.y), z = static_cast<float>(by.z);
-  for (std::size_t i = 0; i < n; ++i) {
-    const float part = share(points[i], middle, reach);
-    const Tilt& tilt = tilts[i];
-    add(points[i], static_cast<std::int32_t>(part * (x + unit * tilt.x)),
-        static_cast<std::int32_t>(part * (y + unit * tilt.y)), static_cast<std::int32_t>(part * (z + unit * tilt.z)));
-  }
+  visit_slots(places, [&](std::size_t i) {
+    const float part = share(places, i, middle, reach);
+    places.x[i] += static_cast<std::int32_t>(part * (x + unit * tilts.x[i]));
+    places.y[i] += static_cast<std::int32_t>(part * (y + unit * tilts.y[i]));
+    places.z[i] += static_cast<std::int32_t>(part * (z + unit * tilts.z[i]));
+  });
 }
 
 std::size_t find_within(const Point* points, std::size_t n, const Point& centre, float reach_squared,
@@ -318,11 +332,6 @@ constexpr Pack numbers = {0, 1, 2, 3, 4, 5, 6, 7};
 constexpr std::uint32_t points_in_pack = width / 4;
 
 inline Pack load(const void* from) { return *static_cast<const Unaligned*>(from); }
-inline Pack load_tilts(const Tilt* from) {
-  Shorts tilts;
-  __builtin_memcpy(&tilts, from, sizeof tilts);
-  return __builtin_convertvector(tilts, Pack);
-}
 inline void store(Pack p, void* to) { *static_cast<Unaligned*>(to) = p; }
 inline Pack all(std::int32_t value) { return Pack{} + value; }
 inline Floats all(float value) { return Floats{} + value; }
@@ -335,42 +344,86 @@ inline Floats squares(Pack points) {
   return pairs + swap_pairs(pairs);
 }
 
-inline Floats shares(Pack points, Pack middle, Floats radius_squared, Floats per_square) {
-  const Floats zero = all(0.0f), one = all(1.0f);
-  const Floats linear = (radius_squared - squares(points - middle)) * per_square;
-  const Floats positive = linear > zero ? linear : zero;
-  return positive < one ? positive : one;
+inline Floats load_floats(const float* from) { return (Floats)load(from); }
+inline Floats load_floats(const std::int16_t* from) {
+  Shorts shorts;
+  __builtin_memcpy(&shorts, from, sizeof shorts);
+  return floats(__builtin_convertvector(shorts, Pack));
 }
 
-int enclosed_volume(const Point* points, std::size_t n, const Point& middle, const Reach& reach) {
-  const Pack centre = repeat(load_point(middle));
-  const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square);
+/// What a move needs of every place, in registers.
+struct MoveOfPlaces {
+  const std::int32_t *x, *y, *z;
+  const float* state_squared;
+  Pack middle_x, middle_y, middle_z;
+  Floats radius_squared, per_square;
+
+  MoveOfPlaces(const Places& places, const Point& middle, const Reach& reach)
+      : x(places.x),
+        y(places.y),
+        z(places.z),
+        state_squared(places.state_squared),
+        middle_x(all(middle.x)),
+        middle_y(all(middle.y)),
+        middle_z(all(middle.z)),
+        radius_squared(all(reach.radius_squared)),
+        per_square(all(reach.per_square)) {}
+
+  static Floats square_of(Pack p) { return floats(p) * floats(p); }
+
+  Floats shares(std::size_t i) const {
+    const Floats squared = (square_of(load(x + i) - middle_x) + square_of(load(y + i) - middle_y)) +
+                           (square_of(load(z + i) - middle_z) + load_floats(state_squared + i));
+    const Floats zero = all(0.0f), one = all(1.0f), linear = (radius_squared - squared) * per_square;
+    const Floats positive = linear > zero ? linear : zero;
+    return positive < one ? positive : one;
+  }
+};
+
+/// Calls visit(slot) for all packs of places.
+template <typename Visit>
+inline void visit_packs(const Places& places, const Visit& visit) {
+  const std::uint32_t *block = places.blocks, *const end = block + places.count;
+  for (; block != end; ++block) {
+    const std::size_t first = static_cast<std::size_t>(*block) * spot::kernels::lanes;
+    for (std::uint32_t k = 0; k < spot::kernels::lanes; k += width) visit(first + k);
+  }
+}
+
+int enclosed_volume(const Places& places, const Point& middle, const Reach& reach) {
+  const MoveOfPlaces move(places, middle, reach);
   Pack sum = {};
-  for (std::size_t i = 0; i < n; i += points_in_pack)
-    sum += whole(shares(load(points + i), centre, radius_squared, per_square) * parts);
-  return add_parts(sum)[0];
+  visit_packs(places, [&](std::size_t i) { sum += whole(move.shares(i) * parts); });
+  const Quarter four = add_parts(sum);
+  return (four[0] + four[1]) + (four[2] + four[3]);
 }
 
-void displace(Point* points, std::size_t n, const Point& middle, const Reach& reach, const Point& by) {
-  const Pack centre = repeat(load_point(middle));
-  const Floats step = floats(repeat(load_point(by)));
-  const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square);
-  for (std::size_t i = 0; i < n; i += points_in_pack) {
-    const Pack p = load(points + i);
-    store(p + whole(step * shares(p, centre, radius_squared, per_square)), points + i);
-  }
+inline void add(Pack by, std::int32_t* to) { store(load(to) + by, to); }
+
+void displace(const Places& places, const Point& middle, const Reach& reach, const Point& by) {
+  const MoveOfPlaces move(places, middle, reach);
+  const Floats by_x = floats(all(by.x)), by_y = floats(all(by.y)), by_z = floats(all(by.z));
+  std::int32_t *const x = places.x, *const y = places.y, *const z = places.z;
+  visit_packs(places, [&](std::size_t i) {
+    const Floats share = move.shares(i);
+    add(whole(share * by_x), x + i);
+    add(whole(share * by_y), y + i);
+    add(whole(share * by_z), z + i);
+  });
 }
 
-void displace_tilted(Point* points, const Tilt* tilts, std::size_t n, const Point& middle, const Reach& reach,
+void displace_tilted(const Places& places, const TiltsOfPlaces& tilts, const Point& middle, const Reach& reach,
                      const Point& by, float unit) {
-  const Pack centre = repeat(load_point(middle)), has_tilt = repeat(Quarter{-1, -1, -1, 0});
-  const Floats step = floats(repeat(load_point(by)));
-  const Floats radius_squared = all(reach.radius_squared), per_square = all(reach.per_square), units = all(unit);
-  for (std::size_t i = 0; i < n; i += points_in_pack) {
-    const Pack p = load(points + i);
-    const Floats tilt = floats(load_tilts(tilts + i) & has_tilt);
-    store(p + whole((step + units * tilt) * shares(p, centre, radius_squared, per_square)), points + i);
-  }
+  const MoveOfPlaces move(places, middle, reach);
+  const Floats by_x = floats(all(by.x)), by_y = floats(all(by.y)), by_z = floats(all(by.z)), units = all(unit);
+  std::int32_t *const x = places.x, *const y = places.y, *const z = places.z;
+  const TiltsOfPlaces own = tilts;
+  visit_packs(places, [&](std::size_t i) {
+    const Floats share = move.shares(i);
+    add(whole(share * (by_x + units * load_floats(own.x + i))), x + i);
+    add(whole(share * (by_y + units * load_floats(own.y + i))), y + i);
+    add(whole(share * (by_z + units * load_floats(own.z + i))), z + i);
+  });
 }
 
 std::size_t find_within(const Point* points, std::size_t n, const Point& centre, float reach_squared,

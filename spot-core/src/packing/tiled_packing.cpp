@@ -137,6 +137,7 @@ void TiledPacking::find_drifted() {
   const std::size_t n = kernels_.find_reached(cells_.drift.data() + first_own, owned, allowed, found_.data());
   for (std::size_t k = 0; k < n; ++k) {
     const std::uint32_t cell = first_own + found_[k], first = cells_.first_slot(cell);
+    if (between_moves_) moves_.write_back(cell);
     const double squared = kernels_.farthest(cells_.points.data() + first, cells_.references.data() + first,
                                              cells_.end_slot(cell) - first);
     if (squared > kept * kept)
@@ -157,6 +158,7 @@ void TiledPacking::move_reference(Place place) {
     const Vector3 inside = lattice.periodic().wrap(Vector3(lattice.low() + at)) - lattice.low();
     const auto periods = [&](int axis) { return inside[axis] > at[axis] ? 1 : inside[axis] < at[axis] ? -1 : 0; };
     add(cells_.points[from], lattice.periods(periods(0), periods(1)));
+    cells_.coordinates.set(from, cells_.points[from]);
     at = inside;
   }
   const Cell cell = lattice.cell_at(at);
@@ -196,11 +198,13 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
   for (std::size_t first = 0;;) {
     const std::size_t end = moves_.end_before_rebuild(moves, first, *communicator_, workers);
     moves_.apply(first, end, workers, received);
+    between_moves_ = moves_.must_rebuild();
+    if (!between_moves_) moves_.write_back(workers);
     // Sweeps are the next to ask where others' grains are.
-    moves_.must_rebuild() ? ghosts_.send_no_positions() : ghosts_.send_positions();
+    between_moves_ ? ghosts_.send_no_positions() : ghosts_.send_positions();
     update_lists(container, workers);
     first = end;
-    if (!moves_.must_rebuild()) return;
+    if (!between_moves_) return;
   }
 }
 

@@ -28,13 +28,14 @@ double phase(std::int64_t id) {
 
 double NonaffineMotion::unit() const { return strength_ * std::sqrt(3.0) / parts; }
 
-void NonaffineMotion::update(Tilt& tilt, std::int64_t id, double z) const {
+bool NonaffineMotion::update(Tilt& tilt, std::int64_t id, double z) const {
   const auto level = static_cast<std::int64_t>(std::floor(z / length_ + phase(id)));
   const auto short_level = static_cast<std::int16_t>(((level % levels) + levels) % levels + 1);
-  if (tilt.level == short_level) return;
+  if (tilt.level == short_level) return false;
   const auto numbers =
       uniform(seed_, RandomPurpose::nonaffine, static_cast<std::uint64_t>(id), static_cast<std::uint64_t>(level));
   tilt = {parts_of(numbers[0]), parts_of(numbers[1]), parts_of(numbers[2]), short_level};
+  return true;
 }
 
 }  // namespace spot

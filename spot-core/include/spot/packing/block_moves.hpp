@@ -17,7 +17,8 @@ namespace spot {
 
 namespace kernels {
 struct Kernels;
-}
+struct Places;
+}  // namespace kernels
 
 /// The moves of a window, as they displace the blocks of grains in the cells: which rows of cells each may reach, what
 /// it encloses, and its displacements, one move after the other.
@@ -49,8 +50,13 @@ class BlockMoves {
   /// Do lists have to be brought up to date, on all ranks, before there can be a next move?
   bool must_rebuild() const { return must_rebuild_; }
 
-  /// Displaces the grains by some of the moves, and counts each as one more of its cells' unrelaxed moves.
+  /// Displaces the grains by some of the moves, and counts each as one more of its cells' unrelaxed moves. Only
+  /// Cells::coordinates say where grains are then, until they are written back.
   void apply(std::size_t first, std::size_t end, Workers& workers, MovesReceived* received);
+
+  /// Writes back to Cells::points where the grains of a cell are now, or all that moves may have reached.
+  void write_back(std::uint32_t cell);
+  void write_back(Workers& workers);
 
   std::size_t memory() const;
 
@@ -61,6 +67,8 @@ class BlockMoves {
     std::vector<CellRow> rows;             // of cells that moves may reach, move by move
     std::vector<Point> shifts;             // of each row, to the image of the move that reaches it, if space repeats
     std::vector<std::size_t> end_of_rows;  // in `rows`, of each move
+    std::vector<CellRow> reached;          // by any move: in each row of the lattice, from the first to the last cell
+    std::vector<std::uint32_t> blocks;     // of slots, that the move at hand may reach
     std::vector<int> enclosed;             // volume of the grains here, by each move
     std::size_t counted;                   // the end of the moves whose lengths are in the drift of cells
     bool must_rebuild;                     // has the drift of a cell become too long?
@@ -75,13 +83,19 @@ class BlockMoves {
 
   void set_parts(int workers);
   void find_rows_of_images(Part& part, const Vector3& middle, double reach) const;
-  Point middle(const Part& part, std::size_t move, std::size_t row) const;
-  void find(Part& part, const std::vector<Move>& moves, double radius);
+  template <typename Visit>
+  void visit_blocks(const CellRow& row, const Visit& visit) const;
+  template <typename Visit>
+  void visit_images(Part& part, std::size_t move, const Visit& visit);
+  void find_rows(Part& part, const std::vector<Move>& moves, double radius);
+  void add_reached(Part& part, const CellRow& row) const;
+  void take_places(const Part& part);
+  void count_enclosed(Part& part);
   void update_tilts(const Part& part, const NonaffineMotion& motion);
   void add_drift(Part& part, std::size_t first, std::int32_t limit);
   void apply(Part& part, std::size_t first, std::size_t end, bool count);
-  void displace(std::uint32_t first, std::uint32_t n, const Point& middle, std::size_t move);
-  void count_received(std::uint32_t first, std::uint32_t n, const Point& middle, std::vector<std::uint32_t>& found);
+  void displace(const kernels::Places& places, const Point& middle, std::size_t move) const;
+  void count_received(const kernels::Places& places, const Point& middle);
 
   Cells& cells_;
   const kernels::Kernels& kernels_;

@@ -65,6 +65,7 @@ class CellLattice {
   void hold(int first, int last) { first_layer_ = first, last_layer_ = last; }
   int first_layer() const { return first_layer_; }
   int last_layer() const { return last_layer_; }
+  std::uint32_t cells_in_row() const { return static_cast<std::uint32_t>(held(0)); }
   std::uint32_t cells_in_layer() const { return static_cast<std::uint32_t>(held(0) * held(1)); }
   std::uint32_t cells_held() const { return static_cast<std::uint32_t>(last_layer_ - first_layer_) * cells_in_layer(); }
   std::uint32_t first_cell_of(int layer) const {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "spot/base/aligned_vector.hpp"
+#include "spot/packing/coordinates.hpp"
 #include "spot/packing/grain.hpp"
 #include "spot/packing/held_cells.hpp"
 #include "spot/packing/point.hpp"
-#include "spot/walk/nonaffine_motion.hpp"
 
 namespace spot {
 
@@ -31,8 +31,9 @@ class SlotData {
 /// Grains in the cells of a lattice, with room in each cell for as many as it needs.
 ///
 /// Layout: every cell has consecutive *slots*, a multiple of kernels::pack, cell after cell, so that a row of cells is
-/// one contiguous range of slots. Empty slots hold points that are in nobody's reach. A grain is in the cell of its
-/// *reference* (Verlet reference position), the place where it was listed last.
+/// one contiguous range of slots; a row along all of x is a multiple of kernels::lanes. Empty slots hold points that
+/// are in nobody's reach. A grain is in the cell of its *reference* (Verlet reference position), the place where it was
+/// listed last.
 ///
 /// Of the grains in ghost layers and images there are copies.
 class Cells : public HeldCells {
@@ -61,7 +62,6 @@ class Cells : public HeldCells {
   /// Grains have tilts from now on, none of which has been drawn.
   void give_tilts();
   bool tilted() const { return tilted_; }
-
   // Slots.
   std::uint32_t slots() const { return first_slot_.back(); }
   std::uint32_t first_slot(std::uint32_t cell) const { return first_slot_[cell]; }
@@ -105,7 +105,6 @@ class Cells : public HeldCells {
   std::vector<Place> take_changes(Side side) { return std::exchange(changed_[side], {}); }
   /// The same in any cells that there may be images of.
   std::vector<Place> take_changes_seen_in_images() { return std::exchange(changed_in_images_, {}); }
-
   /// Takes over what goes with a grain, besides what occupy() does, from another slot.
   void follow(std::uint32_t slot, std::uint32_t from);
 
@@ -122,7 +121,8 @@ class Cells : public HeldCells {
 
   // Of every slot.
   AlignedVector<Point> points, references, corrections;  ///< `corrections`: the last, as far as a solver carries it on
-  AlignedVector<NonaffineMotion::Tilt> tilts;            ///< if they have any; as of the start of a window
+  Coordinates coordinates;                               ///< for `points`, while moves displace them
+  Tilts tilts;                                           ///< if they have any; as of the start of a window
   std::vector<std::int64_t> ids;                         ///< -1 in empty slots
   std::vector<GrainSize> sizes;                          ///< if they are unequal
   // Of every cell.

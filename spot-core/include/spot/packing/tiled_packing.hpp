@@ -139,6 +139,7 @@ class TiledPacking {
   NeighbourLists lists_;
   GhostLayers ghosts_;
   BlockMoves moves_;
+  bool between_moves_ = false;      // of a window, when places are where these have them
   std::vector<std::int64_t> work_;  // in each own layer, since balance()
   std::vector<Place> unsupported_;  // grains that may have lost what bore them
   std::vector<Place> drifted_;      // too far from where they were listed

@@ -32,8 +32,8 @@ class NonaffineMotion {
 
   bool on() const { return strength_ > 0.0; }
 
-  /// Brings the tilt of a grain with its centre at height z up to date.
-  void update(Tilt& tilt, std::int64_t id, double z) const;
+  /// Brings the tilt of a grain with its centre at height z up to date. Returns whether it changed.
+  bool update(Tilt& tilt, std::int64_t id, double z) const;
 
   /// S over the numbers in a unit variance.
   double unit() const;
