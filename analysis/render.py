@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Draw runs side by side: one picture, PNG frames, or an animation (GIF, WebP, MP4)."""
+"""Draw runs side by side: one picture, PNG frames, an animation (GIF, WebP, MP4), or points for ParaView (VTK)."""
 
 from spot_analysis.base.interpreter import require_packages
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Draw runs side by side: one picture, PNG frames, or an animation (GIF, WebP, MP4)."""
+"""Draw runs side by side: one picture, PNG frames, an animation (GIF, WebP, MP4), or points for ParaView (VTK)."""
 
-import argparse
-import math
 import os
+from dataclasses import replace
+
+import numpy as np
 
 from ..base.errors import AnalysisError
 from ..base.progress import Progress
@@ -12,70 +13,21 @@ from ..rendering.colouring import COLOURINGS
 from ..rendering.drawing import draw, view_of
 from ..rendering.pictures import at_common_times, load_pictures, save_pictures, take_pictures
 from ..rendering.source import Run
-from ..statistics.snapshot import TIME_TOLERANCE
+from ..rendering.vtk import write_points
 from . import command_line
+from .render_options import check, parse_arguments, wanted_times
 
 
-def parse_arguments():
-    parser = argparse.ArgumentParser(
-        description=__doc__, epilog="RUN is a folder, file or wildcard of LAMMPS or LIGGGHTS dumps, what --keep wrote, or statistics of "
-        "measure.py (a picture of the front layer every 10 tau). With a scene.json beside the dumps times are in tau, and walls are "
-        "drawn; without, times are steps.")
-    parser.add_argument("runs", nargs="+", metavar="[NAME=]RUN", help="from left to right; snapshots that all of them have are drawn")
-    parser.add_argument("-o", "--output", metavar="FILE", help="x.png: all times in one row; x.gif, x.webp, x.mp4: an animation; "
-                        "without an ending: a folder of PNG frames")
-    parser.add_argument("--colour", choices=COLOURINGS, default="layer", help="what grains are coloured by (default: %(default)s, the "
-                        "layer in which each started; speed: from one snapshot to the next; packing: its share of its Voronoi cell)")
-    parser.add_argument("--layer", type=_positive, default=10, metavar="D", help="height of the starting layers (default: %(default)s d)")
-    parser.add_argument("--range", nargs=2, type=float, metavar=("LOW", "HIGH"), help="of the colours (default: 98 %% of all values)")
-    parser.add_argument("--slice", nargs=2, type=float, metavar=("LOW", "HIGH"), help="draw grains with y between these, in d (default: "
-                        "the layer at the front wall, 1 d deep; without scene.json 2 d in the middle)")
-    parser.add_argument("--times", nargs="+", type=float, metavar="T", help="draw these only (tau, or steps without scene.json)")
-    parser.add_argument("--from", dest="start", type=float, default=-math.inf, metavar="T")
-    parser.add_argument("--to", dest="end", type=float, default=math.inf, metavar="T")
-    parser.add_argument("--spots", type=_positive, metavar="R", help="draw live spots, of a 'dump local' in the folder, as circles of "
-                        "radius R d")
-    parser.add_argument("--diameter", type=_positive, metavar="D", help="of a grain, in the dumps' units, where neither scene.json nor "
-                        "the dumps tell it")
-    parser.add_argument("--height", type=int, default=600, metavar="PIXELS", help="of the pictures (default: %(default)s)")
-    parser.add_argument("--fps", type=_positive, default=10, metavar="N", help="pictures a second (default: %(default)s)")
-    parser.add_argument("--quality", type=int, default=60, metavar="0-100", help="of WebP (default: %(default)s)")
-    parser.add_argument("--keep", metavar="FILE.npz", help="of a single run: keep what is drawn, a small RUN for later")
-    return parser.parse_args()
-
-
-def _positive(text):
-    value = float(text)
-    if not (value > 0 and math.isfinite(value)):
-        raise argparse.ArgumentTypeError(f"'{text}' must be a positive number")
-    return value
-
-
-def wanted_times(options):
-    """Tells of a time whether it is drawn."""
-    def wanted(time):
-        near = options.times is None or any(abs(time - one) <= TIME_TOLERANCE for one in options.times)
-        return near and options.start - TIME_TOLERANCE <= time <= options.end + TIME_TOLERANCE
-    return wanted
-
-
-def check(options):
-    if not (options.output or options.keep):
-        raise AnalysisError("give --output or --keep")
-    if options.output:
-        files.check_output(options.output)
-    if options.keep and (len(options.runs) > 1 or not options.keep.endswith(".npz")):
-        raise AnalysisError("--keep wants one run, and a file that ends in .npz")
-    for name, pair in (("slice", options.slice), ("range", options.range)):
-        if pair and not pair[0] < pair[1]:
-            raise AnalysisError(f"--{name} {pair[0]:g} {pair[1]:g}: the first must be below the second")
-    if not 100 <= options.height <= 4000:
-        raise AnalysisError(f"--height {options.height} must be 100 to 4000 pixels")
+def split_word(word):
+    """(label, path) of NAME=RUN or RUN."""
+    name, equals, path = word.partition("=")
+    if os.path.exists(word) or not equals:
+        return os.path.basename(os.path.normpath(word)), word
+    return name, path
 
 
 def open_reel(word, options, progress):
-    name, equals, path = word.rpartition("=")
-    label = name if equals else os.path.basename(os.path.normpath(path))
+    label, path = split_word(word)
     wanted = wanted_times(options)
     if path.endswith(".npz") and os.path.isfile(path):
         reel = load_pictures(label, path, wanted)
@@ -110,14 +62,33 @@ def write(options, reels, rows, progress):
         files.write_frames(options.output, images)
 
 
+def write_vtk(options, progress):
+    label, path = split_word(options.runs[0])
+    run = Run(label, path, options.diameter, command_line.print_warning)
+    colouring, wanted, taken = COLOURINGS[options.colour](run, options.layer), wanted_times(options), 0
+    for grains in run.snapshots():
+        colouring.see(grains)
+        if wanted(grains.time):
+            if taken % options.every == 0:
+                values = colouring.values(grains, np.ones(len(grains.ids), dtype=bool))
+                write_points(f"{options.output[:-len('.vtk')]}.{taken // options.every:04}.vtk", grains, values, options.colour)
+                progress(f"{taken // options.every + 1} files written")
+            taken += 1
+    if not taken:
+        raise AnalysisError(f"{path}: no snapshot at a time that was asked for")
+
+
 def render():
     options = parse_arguments()
     check(options)
     progress = Progress("render", terminal_only=True)
+    if options.output and options.output.endswith(".vtk"):
+        write_vtk(options, progress)
+        return
     reels = [open_reel(word, options, progress) for word in options.runs]
-    rows = at_common_times(reels)
+    rows = at_common_times(reels)[::options.every]
     if options.keep:
-        save_pictures(options.keep, reels[0])
+        save_pictures(options.keep, replace(reels[0], pictures=[row[0] for row in rows]))
     if options.output:
         write(options, reels, rows, progress)
 

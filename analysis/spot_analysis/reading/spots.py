@@ -36,8 +36,13 @@ def _read_entries(lines):
         if words[:1] != ["ITEM:"] or words[1:2] == ["ATOMS"] or words[1:4] == ["NUMBER", "OF", "ATOMS"]:
             return None
         if words[1:] == ["NUMBER", "OF", "ENTRIES"]:
-            count = int(lines.need(1, "'ITEM: NUMBER OF ENTRIES'")[0])
-        elif words[1] == "ENTRIES":
+            text = lines.need(1, "'ITEM: NUMBER OF ENTRIES'")[0].strip()
+            if not text.isdigit():
+                raise lines.error(f"'ITEM: NUMBER OF ENTRIES' wants a whole number, found '{text}'")
+            count = int(text)
+        elif words[1:2] == ["ENTRIES"]:
+            if count is None or "TIMESTEP" not in header:
+                raise lines.error("'ITEM: ENTRIES' without a timestep and a number of entries before it")
             return header["TIMESTEP"], _positions(lines, count, words[2:])
         else:
             read_item(lines, " ".join(words[1:]), header)
@@ -48,8 +53,10 @@ def _positions(lines, count, columns):
     if len(columns) != COLUMNS:
         raise DumpError(f"{lines.path}, line {lines.number}: spots have {COLUMNS} columns, as "
                         f"'dump ID all local N FILE f_ID[1] ... f_ID[6]' writes them; found {' '.join(columns)}")
+    if count == 0:
+        return np.empty((0, 3))
     rows = lines.need(count, "'ITEM: ENTRIES'")
     try:
-        return np.loadtxt(rows, ndmin=2)[:, 1:4] if count else np.empty((0, 3))
+        return np.loadtxt(rows, ndmin=2)[:, 1:4]
     except (IndexError, ValueError) as error:
         raise lines.error(f"the rows of this frame are not a table of numbers ({error})") from error

@@ -14,7 +14,7 @@ from PIL import Image
 from ..report.plots_silo import LATER_COLOUR, LAYER_COLOURS
 
 DPI = 100
-TITLE, BAR, MARGIN = 0.3, 0.55, 0.06  # inches
+TITLE, BAR, MARGIN = 0.3, 0.6, 0.06  # inches
 MAPS = {"speed": "viridis", "packing": "magma"}
 SPOT_COLOUR = "#d1495b"
 
@@ -46,7 +46,7 @@ def view_of(reels, rows, height, colours, spot_radius):
 
 def draw(panels, view, colour):
     """A PIL.Image of ``panels``, [(title, picture, container, colour_label), ...] from left to right."""
-    bar = TITLE + BAR if colour in MAPS else MARGIN
+    bar = BAR if colour in MAPS else MARGIN
     tall = view.height / DPI
     inner = tall - TITLE - bar
     wide = inner * (view.x[1] - view.x[0]) / (view.z[1] - view.z[0])

@@ -13,9 +13,12 @@ ANIMATIONS = (".gif", ".webp", ".mp4")
 def check_output(path):
     """Raise AnalysisError, before any work, where ``path`` can't be written."""
     ending = os.path.splitext(path)[1].lower()
-    if ending and ending not in (".png", *ANIMATIONS):
-        raise AnalysisError(f"{path}: unknown kind of picture '{ending}'; known are .png, {', '.join(ANIMATIONS)}, and a folder of "
+    if ending and ending not in (".png", ".vtk", *ANIMATIONS):
+        raise AnalysisError(f"{path}: unknown kind of picture '{ending}'; known are .png, {', '.join(ANIMATIONS)}, .vtk, and a folder of "
                             "PNG frames, which has no ending")
+    folder = os.path.dirname(path) or "."
+    if not os.path.isdir(folder):
+        raise AnalysisError(f"{path}: no folder {folder}")
     if ending == ".mp4" and not shutil.which("ffmpeg"):
         raise AnalysisError(f"{path}: MP4 needs the program ffmpeg, which is not here (Debian: ffmpeg); .webp and .gif do without")
 
