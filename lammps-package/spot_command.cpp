@@ -279,7 +279,7 @@ spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, const s
   spot::RelaxationParameters relaxation;
   if (accuracy == Accuracy::exact) return relaxation;
   const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 4e-3 : 2e-3;
+  relaxation.tolerance = fast ? 4e-3 : 1.7e-3;
   relaxation.alpha = fast ? 1.0 : 0.8;
   relaxation.momentum = fast ? profile.calibrated().fast_momentum : profile.calibrated().momentum;
   relaxation.contact_overlap = fast ? 0.0 : 1.5e-3;

@@ -482,23 +482,6 @@ TEST(TiledPackingUnit, SweepsOnlyCellsWithEnoughUnrelaxedMoves) {
   EXPECT_EQ(spot::CellRelaxation(packing, relaxation).sweep(1, 1.0, *silo, workers), 0u) << "no move is left unrelaxed";
 }
 
-TEST(TiledPackingUnit, AMoveOfTwiceTheWeightCountsAsFourUnrelaxedMoves) {
-  const auto silo = scenes::small_silo(6.0, 4.0);
-  TiledPacking packing(1.0, 100.0, -1.0, scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7), *silo);
-  Workers workers(1);
-  const auto sweep = [&](double moves) { return spot::CellRelaxation(packing, {}).sweep(moves, 1.0, *silo, workers); };
-  auto moves = one_move({0, 0, 5}, {0.7, 0, 0.1});
-  moves[0].weight = 2.0;
-  carry_out(packing, moves, {2.6, 1e-4}, *silo, workers);
-  EXPECT_EQ(sweep(4.1), 0u);
-  EXPECT_GT(sweep(4.0), 0u);
-  // However little a move displaces, it counts.
-  moves[0].weight = 0.01;
-  carry_out(packing, moves, {2.6, 1e-4}, *silo, workers);
-  EXPECT_EQ(sweep(0.13), 0u);
-  EXPECT_GT(sweep(0.1), 0u);
-}
-
 TEST(TiledPackingUnit, ASweepTakesOffAsManyMovesAsItIsMadeFor) {
   const auto silo = scenes::small_silo(6.0, 4.0);
   TiledPacking packing(1.0, 100.0, -1.0, scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 20.0}, 0.01, 7), *silo);

@@ -25,7 +25,7 @@ Scene::Scene() {
   spots.surface_exponent = 3.0;
   spots.seed = 1;
   set_step_height(1.2);
-  relaxation.tolerance = 2e-3;
+  relaxation.tolerance = 1.7e-3;
   relaxation.momentum = 0.67;
   relaxation.contact_overlap = 1.5e-3;
   fill(14.0);

@@ -24,12 +24,6 @@ constexpr double largest_radius_in_diameters = 8.0;
 /// No cell's count of unrelaxed moves goes beyond this, however little is relaxed.
 constexpr std::int32_t most_unrelaxed = 1 << 28;
 
-/// What a move of this weight adds to the counts of unrelaxed moves: the overlaps that it makes go with the square of
-/// its displacement. Something at least, so that no number of small moves is overlooked.
-std::int32_t parts_of_move(double weight) {
-  return std::max(1, static_cast<std::int32_t>(std::nearbyint(weight * weight * Cells::parts_of_move)));
-}
-
 /// The place of a move in the order of moves, the same on all ranks: by spot, then by step.
 using Order = Communicator::Pair;
 
@@ -198,11 +192,9 @@ void BlockMoves::weigh(const std::vector<Move>& moves, const SpotParameters& spo
   tilt_unit_ = static_cast<float>(motion.unit());
   steps_.clear();
   lengths_.clear();
-  parts_of_moves_.clear();
   for (const Move& move : moves) {
     const Point step = cells_.lattice().wrapped(-spots.influence * move.weight * move.step);
     steps_.push_back(step);
-    parts_of_moves_.push_back(parts_of_move(move.weight));
     lengths_.push_back(length_of(step) + static_cast<std::int32_t>(std::ceil(motion.largest() * std::abs(step.z))));
   }
 }
@@ -256,7 +248,7 @@ void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool coun
     part.visit_cells(part.counted - 1, [&](std::uint32_t cell) { cells_.drift[cell] -= lengths_[part.counted - 1]; });
   for (std::size_t m = first; m < end; ++m) {
     part.visit_cells(m, [&](std::uint32_t cell) {
-      cells_.unrelaxed[cell] = std::min(cells_.unrelaxed[cell] + parts_of_moves_[m], most_unrelaxed);
+      cells_.unrelaxed[cell] = std::min(cells_.unrelaxed[cell] + Cells::parts_of_move, most_unrelaxed);
     });
     visit_images(part, m, [&](const kernels::Places& places, const Point& middle) {
       if (count) count_received(places, middle);
@@ -301,8 +293,7 @@ void BlockMoves::write_back(Workers& workers) {
 }
 
 std::size_t BlockMoves::memory() const {
-  std::size_t bytes =
-      bytes_in(lengths_, parts_of_moves_, parts_, cells_reached_, middles_, steps_, enclosed_, received_);
+  std::size_t bytes = bytes_in(lengths_, parts_, cells_reached_, middles_, steps_, enclosed_, received_);
   for (const Part& part : parts_)
     bytes += bytes_in(part.rows, part.shifts, part.end_of_rows, part.reached, part.enclosed);
   return bytes;

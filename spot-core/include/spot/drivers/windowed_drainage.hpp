@@ -17,10 +17,9 @@ namespace spot {
 /// The fast driver. Per window of time all spots walk and displace their blocks, in order of birth; then the cells in
 /// which that has used up the tolerance are relaxed, as often as it takes.
 ///
-/// Each cell counts its unrelaxed moves, those that reached into it, each times its weight squared: n of them add
-/// w^2 dx^2 n s / 3 to the mean square overlap along the line of centres, s being the mean square difference of the
-/// shares of two grains in touch. A cell is swept when that exceeds the tolerance squared, and each sweep takes that
-/// many moves off its count.
+/// Each cell counts its unrelaxed moves, those that reached into it: n of them add w^2 dx^2 n s / 3 to the mean square
+/// overlap along the line of centres, s being the mean square difference of the shares of two grains in touch. A cell
+/// is swept when that exceeds the tolerance squared, and each sweep takes that many moves off its count.
 ///
 /// With a fixed volume, moves are weighed by what they enclose before the first move of their window.
 ///

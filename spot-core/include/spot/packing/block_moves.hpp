@@ -50,8 +50,8 @@ class BlockMoves {
   /// Do lists have to be brought up to date, on all ranks, before there can be a next move?
   bool must_rebuild() const { return must_rebuild_; }
 
-  /// Displaces the grains by some of the moves, and adds each, times its weight squared, to its cells' unrelaxed moves.
-  /// Only Cells::coordinates say where grains are then, until they are written back.
+  /// Displaces the grains by some of the moves, and counts each as one more of its cells' unrelaxed moves. Only
+  /// Cells::coordinates say where grains are then, until they are written back.
   void apply(std::size_t first, std::size_t end, Workers& workers, MovesReceived* received);
 
   /// Writes back to Cells::points where the grains of a cell are now, or all that moves may have reached.
@@ -102,9 +102,8 @@ class BlockMoves {
   std::vector<Part> parts_;                  // one for each worker
   std::vector<std::int64_t> cells_reached_;  // by the moves of a window, in each own layer, and 1
   std::vector<Point> middles_, steps_;
-  std::vector<std::int32_t> lengths_;         // of the displacements, at most, in quanta
-  std::vector<std::int32_t> parts_of_moves_;  // what each adds to the counts of unrelaxed moves
-  float tilt_unit_ = 0.0f;                    // NonaffineMotion::unit()
+  std::vector<std::int32_t> lengths_;  // of the displacements, at most, in quanta
+  float tilt_unit_ = 0.0f;             // NonaffineMotion::unit()
   Reach reach_{};
   std::vector<int> enclosed_;            // volume of own grains, by each move
   std::vector<std::uint32_t> received_;  // moves of the grain in each slot, where they are counted

@@ -126,13 +126,12 @@ class Cells : public HeldCells {
   std::vector<std::int64_t> ids;                         ///< -1 in empty slots
   std::vector<GrainSize> sizes;                          ///< if they are unequal
   // Of every cell.
-  std::vector<std::int32_t> unrelaxed;  ///< moves that have reached into it since it was relaxed, times their
-                                        ///< weights squared, in sixteenths
+  std::vector<std::int32_t> unrelaxed;  ///< moves that have reached into it since it was relaxed, in sixteenths
   std::vector<std::int32_t> drift;      ///< no grain is farther from its reference, in quanta
   /// Places of this rank to which grains came that are neither free nor held, and perhaps others.
   std::vector<Place> in_motion;
 
-  /// Parts in `unrelaxed` of a move of weight 1.
+  /// Parts of a move in `unrelaxed`.
   static constexpr std::int32_t parts_of_move = 16;
 
  private:

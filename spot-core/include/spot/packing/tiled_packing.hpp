@@ -69,8 +69,7 @@ class TiledPacking {
   using Weigh = std::function<void(const std::vector<int>& enclosed, std::vector<Move>& moves)>;
 
   /// Collective. Applies the moves, one after the other to every grain, as displace() does. They are weighed before the
-  /// first one is applied. Each counts, times its weight squared, as an unrelaxed move of all cells that it may have
-  /// reached.
+  /// first one is applied. Each counts as an unrelaxed move of all cells that it may have reached.
   /// `moves`: those that may reach grains of this rank, in the order of (spot, number) if there are several ranks.
   /// `received`, if there is one: counts the moves of each grain. Throws InvalidParameter unless the radius is below 8
   /// diameters.

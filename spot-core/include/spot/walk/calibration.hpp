@@ -71,8 +71,8 @@ constexpr double least_share_of_critical = 0.85;
 
 /// Bounds of the volume that a spot carries, over that of a newborn one. One that has left nearly all of it goes on
 /// climbing, to make good what others have left too much of. The upper bound is a choice by what came out: with 1.3
-/// half of the final flux came to 90 d 4 tau later than in DEM, with 2, 3 and 4 when it does there.
-constexpr double least_volume = 0.1, most_volume = 3.0;
+/// half of the final flux came to 90 d 4 tau later than in DEM, with 2 and 4 when it does there.
+constexpr double least_volume = 0.1, most_volume = 2.0;
 
 /// Of the non-affine motion of grains: with more than 1 / sqrt(3) some of them would rise.
 constexpr double largest_nonaffine = 0.5;
