@@ -14,6 +14,7 @@ from ..rendering.drawing import draw, view_of
 from ..rendering.pictures import at_common_times, load_pictures, save_pictures, take_pictures
 from ..rendering.source import Run
 from ..rendering.vtk import write_points
+from ..statistics.snapshot import TIME_TOLERANCE
 from . import command_line
 from .render_options import check, parse_arguments, wanted_times
 
@@ -50,7 +51,7 @@ def write(options, reels, rows, progress):
     view = view_of(reels, rows, options.height, options.range, options.spots)
     panels = [[(title(reel, picture), picture, reel.container, reel.colour_label) for reel, picture in zip(reels, row)] for row in rows]
     if options.output.lower().endswith(".png"):
-        draw(sum(panels, []), view, options.colour).save(options.output)
+        draw(sum(panels, []), view, options.colour).quantize(256).save(options.output, optimize=True)  # flat colours: a third of the size
         return
     images = []
     for row in panels:
@@ -62,20 +63,29 @@ def write(options, reels, rows, progress):
         files.write_frames(options.output, images)
 
 
+def check_times(asked, found):
+    """Raise AnalysisError where a time that was asked for has no snapshot."""
+    missing = [f"{time:g}" for time in asked or () if not any(abs(time - one) <= TIME_TOLERANCE for one in found)]
+    if missing:
+        raise AnalysisError(f"--times {' '.join(missing)}: no such snapshot, or not of all runs")
+
+
 def write_vtk(options, progress):
     label, path = split_word(options.runs[0])
     run = Run(label, path, options.diameter, command_line.print_warning)
-    colouring, wanted, taken = COLOURINGS[options.colour](run, options.layer), wanted_times(options), 0
+    colouring, wanted, found = COLOURINGS[options.colour](run, options.layer), wanted_times(options), []
     for grains in run.snapshots():
         colouring.see(grains)
         if wanted(grains.time):
-            if taken % options.every == 0:
+            if len(found) % options.every == 0:
+                number = len(found) // options.every
                 values = colouring.values(grains, np.ones(len(grains.ids), dtype=bool))
-                write_points(f"{options.output[:-len('.vtk')]}.{taken // options.every:04}.vtk", grains, values, options.colour)
-                progress(f"{taken // options.every + 1} files written")
-            taken += 1
-    if not taken:
+                write_points(f"{options.output[:-len('.vtk')]}.{number:04}.vtk", grains, values, options.colour)
+                progress(f"{number + 1} files written")
+            found.append(grains.time)
+    if not found:
         raise AnalysisError(f"{path}: no snapshot at a time that was asked for")
+    check_times(options.times, found)
 
 
 def render():
@@ -86,7 +96,9 @@ def render():
         write_vtk(options, progress)
         return
     reels = [open_reel(word, options, progress) for word in options.runs]
-    rows = at_common_times(reels)[::options.every]
+    rows = at_common_times(reels)
+    check_times(options.times, [row[0].time for row in rows])
+    rows = rows[::options.every]
     if options.keep:
         save_pictures(options.keep, replace(reels[0], pictures=[row[0] for row in rows]))
     if options.output:

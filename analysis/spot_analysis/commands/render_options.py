@@ -31,8 +31,8 @@ def parse_arguments():
     parser.add_argument("--from", dest="start", type=float, default=-math.inf, metavar="T")
     parser.add_argument("--to", dest="end", type=float, default=math.inf, metavar="T")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="draw every Nth of these (default: %(default)s)")
-    parser.add_argument("--spots", type=_positive, metavar="R", help="draw live spots, of a 'dump local' in the folder, as circles of "
-                        "radius R d")
+    parser.add_argument("--spots", type=_positive, metavar="R", help="draw the middles of live spots, of a 'dump local' in the "
+                        "folder, as discs of radius R d, such as 0.4")
     parser.add_argument("--diameter", type=_positive, metavar="D", help="of a grain, in the dumps' units, where neither scene.json nor "
                         "the dumps tell it")
     parser.add_argument("--height", type=int, default=600, metavar="PIXELS", help="of the pictures (default: %(default)s)")

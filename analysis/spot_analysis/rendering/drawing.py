@@ -90,7 +90,7 @@ def _draw_spots(axis, spots, radius):
     if radius is not None:
         size = np.full(len(spots), 2 * radius)
         axis.add_collection(EllipseCollection(size, size, 0 * size, units="x", offsets=spots, transOffset=axis.transData,
-                                              facecolors="none", edgecolors=SPOT_COLOUR, linewidths=0.8))
+                                              facecolors=SPOT_COLOUR, linewidths=0, alpha=0.6))
 
 
 def _draw_walls(axis, container, top):

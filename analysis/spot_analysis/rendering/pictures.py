@@ -23,7 +23,7 @@ class Picture:
     """One snapshot, n grains, the far ones first; lengths in d, time in tau or steps.
 
     x, z, diameters : (n,); values : (n,), what they are coloured by, not a number where unknown
-    spots : (m, 2) x and z
+    spots : (m, 2) x and z of live spots in the slab
     """
 
     time: float
@@ -64,8 +64,9 @@ def take_pictures(run, colour, colouring, slab, wanted, progress):
         values = colouring.values(grains, chosen)
         x, y, z = grains.positions[chosen].T
         far_first = np.argsort(-y, kind="stable")
+        spots = grains.spots if slab is None else grains.spots[(grains.spots[:, 1] >= slab[0]) & (grains.spots[:, 1] < slab[1])]
         pictures.append(Picture(grains.time, x[far_first], z[far_first], grains.diameters[chosen][far_first], values[far_first],
-                                grains.spots[:, [0, 2]]))
+                                spots[:, [0, 2]]))
         progress(f"{run.label}: {len(pictures)} snapshots read")
     return Reel(run.label, colour, colouring.LABEL, run.container, run.scene is not None, pictures)
 
