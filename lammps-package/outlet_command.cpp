@@ -79,9 +79,10 @@ void OutletCommand::validate() const {
         "keyword 'injection' is missing: spots born per time at each outlet, outflow / (influence * grains a spot); or "
         "'beverloo g' predicts it");
   if (!gravity_ && rates_.size() != outlets_.size())
-    throw InvalidParameter(message("'injection' has ", rates_.size(), rates_.size() == 1 ? " rate" : " rates",
-                                   " but there are ", outlets_.size(),
-                                   " outlets: give one for each, in the order of the outlets"));
+    throw InvalidParameter(
+        message("'injection' has ", rates_.size(), rates_.size() == 1 ? " rate" : " rates",
+                outlets_.size() == 1 ? " but there is " : " but there are ", outlets_.size(),
+                outlets_.size() == 1 ? " outlet: give" : " outlets: give one for each, in the order of the outlets"));
   if (!schedules_.empty() && schedules_.rbegin()->first > outlets_.size())
     throw InvalidParameter(message("'schedule ", schedules_.rbegin()->first,
                                    "' is for an outlet that is not there: ", "they count from 1 to ", outlets_.size()));

@@ -104,7 +104,7 @@ TEST(OutletCommand, MistakesAreNamed) {
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4"), AllOf(HasSubstr("'injection' is missing"), HasSubstr("'beverloo g'")));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 beverloo 1"), HasSubstr("only one of"));
   EXPECT_THAT(error_of(box, "orifice -5 0 0 3 orifice 5 0 0 3 injection 300"), HasSubstr("1 rate but there are 2"));
-  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 300 20"), HasSubstr("2 rates but there are 1"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 300 20"), HasSubstr("2 rates but there is 1"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection -1"), HasSubstr("zero or positive"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 0"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 orifice 4 0 0 3 injection 1 1"), HasSubstr("overlap"));

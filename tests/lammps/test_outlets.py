@@ -90,7 +90,7 @@ def test_beverloos_law_is_told(tmp_path):
 @pytest.mark.parametrize("command, said", [
     (FIX.replace(WALLS, "walls add block -9 5 -4 4 0 30"), "not within the simulation box"),
     (FIX.replace(WALLS, "walls add block -5 5 -4 4 0 30 walls cut block -3 3 -3 3 0 1"), "orifice of radius 3"),
-    (FIX.replace("injection 100", "injection 50 50"), "2 rates but there are 1"),
+    (FIX.replace("injection 100", "injection 50 50"), "2 rates but there is 1"),
     (fix("region silo orifice -4 0 0 3 orifice 4 0 0 3"), "'region' takes one round orifice"),
     (FIX.replace(OPENING, "slot 0 0 0 12 8"), "slot of 12 by 8")])
 def test_mistakes_are_named(tmp_path, command, said):
