@@ -23,6 +23,7 @@
 #include "spot/base/memory.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
+#include "spot/geometry/shaped_container.hpp"
 #include "spot/geometry/silos.hpp"
 #include "spot_calibration.h"
 #include "spot_command.h"
@@ -38,6 +39,9 @@ using namespace FixConst;
 using spot::message;
 
 namespace {
+
+/// Place in the global vector of the grains that have left through the first outlet; those of the others follow.
+constexpr int FIRST_OF_OUTLETS = 8;
 
 /// Columns of the spots in dump local.
 enum SpotColumn { ID, X, Y, Z, STEPS, VOLUME, COLUMNS };
@@ -135,6 +139,7 @@ struct FixSpot::Model {
   std::optional<SavedRun> saved;  // from a restart file, until the drainage goes on from it
   double diameter = 0.0;
   double drained_mass = 0.0;
+  std::vector<std::int64_t> drained_at;  // grains that have left through each outlet, as far as this rank knows
   double overlap_after_run = 0.0;
   std::shared_ptr<const spot::Container> container;
   std::unique_ptr<spot::Drainage> drainage;
@@ -142,7 +147,7 @@ struct FixSpot::Model {
   double window = 0.0;       // in time units; until the first step only what it would be
   int windows_per_step = 1;
   std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
-  bool named_unused_forces = false;
+  bool named_unused_forces = false, told_outflow = false;
   LocalIndices local;
   std::vector<tagint> leaving;             // drained grains that LAMMPS still holds, on whichever rank
   std::deque<Drained> drained = {{0, 0}};  // after each of the last command.average steps, and before
@@ -168,7 +173,6 @@ FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg)
   restart_global = 1;
 
   vector_flag = 1;
-  size_vector = 8;
   global_freq = 1;
   extvector = 0;
 
@@ -188,6 +192,8 @@ FixSpot::FixSpot(LAMMPS *instance, int narg, char **arg)
   } catch (const spot::Error &e) {
     error->all(FLERR, message("Illegal fix spot command: ", e.what()));
   }
+  model->drained_at.assign(model->command.outlets.outlets().size(), 0);
+  size_vector = FIRST_OF_OUTLETS + static_cast<int>(model->drained_at.size());
   if (model->command.per_atom) offer_output_per_atom();
 }
 
@@ -234,7 +240,7 @@ void FixSpot::choose_window() {
   double window = command.window.value_or(update->dt);
   if (!command.window && !*command.time_ordered) {
     const double flow =
-        spot::WindowedDrainage::flow_through_orifice(command.spots, 1.0, model->diameter, *command.orifice);
+        spot::WindowedDrainage::flow_through_orifice(command.spots, 1.0, model->diameter, command.outlets.outlets());
     const double longest = std::min(calibration::climb_in_a_window * model->diameter / command.spots.speed,
                                     calibration::flow_in_a_window / flow);
     window = update->dt / std::ceil(update->dt / longest - 1e-9);
@@ -321,6 +327,7 @@ void FixSpot::init() {
   comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
   try {
     model->command.resolve(model->diameter);
+    tell_predicted_outflow();
     if (*model->command.time_ordered && comm->nprocs > 1)
       throw spot::InvalidParameter(message("relaxation in the order of time runs on 1 MPI rank, not on ", comm->nprocs,
                                            ": use 'accuracy normal', or 'relax tol' with a tolerance"));
@@ -332,6 +339,20 @@ void FixSpot::init() {
   } catch (const spot::Error &e) {
     error->all(FLERR, message("fix spot: ", e.what()));
   }
+}
+
+/// Once: what 'beverloo' has made of the outlets, and where not to trust it.
+void FixSpot::tell_predicted_outflow() {
+  const OutletCommand &outlets = model->command.outlets;
+  const std::vector<double> outflow = outlets.predicted_outflow(model->diameter);
+  if (outflow.empty() || model->told_outflow || comm->me != 0) return;
+  model->told_outflow = true;
+  const spot::Outlets all = outlets.outlets();
+  for (std::size_t k = 0; k < outflow.size(); ++k)
+    utils::logmesg(lmp, message("fix spot: Beverloo's law predicts an outflow of ", outflow[k],
+                                " grains per time through the ", all[k].name(), ", ",
+                                model->command.spots.injection_rate.largest(k), " births of spots per time\n"));
+  for (const std::string &doubt : outlets.doubts(model->diameter)) error->warning(FLERR, "fix spot: " + doubt);
 }
 
 /// Of one rank, maybe: all others have to stop, too.
@@ -358,6 +379,9 @@ void FixSpot::check_box() {
   } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
     require('x', cylinder->x - cylinder->radius, cylinder->x + cylinder->radius);
     require('y', cylinder->y - cylinder->radius, cylinder->y + cylinder->radius);
+  } else if (const auto *shaped = std::get_if<ShapedWalls>(&command.walls)) {
+    require('x', shaped->low().x(), shaped->high().x());
+    require('y', shaped->low().y(), shaped->high().y());
   }
   if (*command.outlet < domain->boxlo[2])
     throw spot::InvalidContainer(message("outlet is at z = ", *command.outlet, " but the simulation box begins at ",
@@ -368,17 +392,20 @@ void FixSpot::check_box() {
 void FixSpot::make_container() {
   const SpotCommand &command = model->command;
   const spot::SpotBuffers buffers{*command.side_buffer, *command.base_buffer};
+  const spot::Outlets outlets = command.outlets.outlets();
   if (const auto *box = std::get_if<BoxWalls>(&command.walls)) {
-    model->container = spot::box_silo(box->x_low, box->x_high, box->y_low, box->y_high, *command.orifice, buffers);
+    model->container = spot::box_silo(box->x_low, box->x_high, box->y_low, box->y_high, outlets, buffers);
   } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
-    model->container = spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, *command.orifice, buffers);
+    model->container = spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, outlets, buffers);
+  } else if (const auto *shaped = std::get_if<ShapedWalls>(&command.walls)) {
+    model->container = std::make_shared<spot::ShapedContainer>(shaped->solid(), outlets, buffers);
   } else {
     const std::string &name = std::get<RegionWalls>(command.walls).id;
     Region *region = find_region(*domain, name, 0);
     if (!region) throw spot::InvalidContainer(message("region '", name, "' does not exist"));
     if (region->varshape || region->dynamic_check())
       throw spot::InvalidContainer(message("region '", name, "' moves or changes shape, which is not supported"));
-    model->container = std::make_shared<RegionContainer>(region, *domain, *command.orifice, buffers);
+    model->container = std::make_shared<RegionContainer>(region, *domain, *command.outlets.single_orifice(), buffers);
   }
 }
 
@@ -550,7 +577,9 @@ void FixSpot::initial_integrate(int) {
     model->windows += model->windows_per_step;
     drainage.advance_to(static_cast<double>(model->windows) * model->window);
     drainage.require_inside();
-    write_grains(drainage.take_drained(), true);
+    const std::vector<spot::Grain> drained = drainage.take_drained();
+    count_at_outlets(drained);
+    write_grains(drained, true);
     if (peratom_flag) add_moves_received();
     remember_grains();
   } catch (const spot::Error &e) {
@@ -563,6 +592,13 @@ void FixSpot::initial_integrate(int) {
   auto &drained = model->drained;
   drained.push_back({model->windows, drained.back().grains + static_cast<std::int64_t>(model->leaving.size())});
   if (drained.size() > static_cast<std::size_t>(model->command.average) + 1) drained.pop_front();
+}
+
+/// Each through the outlet that was nearest when it left.
+void FixSpot::count_at_outlets(const std::vector<spot::Grain> &drained) {
+  const spot::Outlets outlets = model->command.outlets.outlets();
+  for (const spot::Grain &grain : drained)
+    ++model->drained_at[static_cast<std::size_t>(&outlets.nearest(grain.position) - &outlets[0])];
 }
 
 /// Another fix may hand grains to other ranks before LAMMPS asks for those that leave.
@@ -646,8 +682,11 @@ double FixSpot::compute_vector(int which) {
       return update->whichflag ? largest_overlap() : model->overlap_after_run;
     case 6:
       return static_cast<double>(model->drainage->total().sweeps);
-    default:
+    case 7:
       return model->volume_left();
+    default:
+      return static_cast<double>(
+          model->ranks->sum(model->drained_at.at(static_cast<std::size_t>(which - FIRST_OF_OUTLETS))));
   }
 }
 
@@ -671,6 +710,7 @@ double FixSpot::mean_outflow() const {
 void FixSpot::write_restart(FILE *file) {
   SavedRun run;
   MPI_Allreduce(&model->drained_mass, &run.drained_mass, 1, MPI_DOUBLE, MPI_SUM, world);
+  run.drained_at = model->ranks->sum(model->drained_at);
   run.diameter = model->diameter;
   run.windows = model->windows;
   for (const Model::Drained &drained : model->drained) {
@@ -696,7 +736,11 @@ void FixSpot::restart(char *bytes) {
   }
   model->diameter = model->saved->diameter;
   model->windows = model->saved->windows;
+  // Other ranks' shares are in that of rank 0. A number of outlets that is another one is refused later.
   model->drained_mass = comm->me == 0 ? model->saved->drained_mass : 0.0;
+  model->drained_at.assign(model->drained_at.size(), 0);
+  if (comm->me == 0 && model->saved->drained_at.size() == model->drained_at.size())
+    model->drained_at = model->saved->drained_at;
   model->drained.clear();
   for (std::size_t k = 0; k < model->saved->drained_after_step.size(); ++k)
     model->drained.push_back({model->saved->windows_after_step[k], model->saved->drained_after_step[k]});

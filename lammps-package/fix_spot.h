@@ -62,6 +62,7 @@ class FixSpot : public Fix {
   void check_other_fixes();
   void check_integrators() const;
   void name_unused_forces();
+  void tell_predicted_outflow();
   void make_container();
   void make_drainage();
   double extent() const;
@@ -75,6 +76,7 @@ class FixSpot : public Fix {
   void write_grains(const std::vector<spot::Grain> &, bool);
   void offer_output_per_atom();
   void add_moves_received();
+  void count_at_outlets(const std::vector<spot::Grain> &);
   void tell_all_who_leaves();
   int local_index(std::int64_t) const;
   void list_spots();

@@ -15,7 +15,7 @@ using spot::message;
 namespace {
 
 constexpr char magic[8] = {'s', 'p', 'o', 't', ' ', 'r', 'u', 'n'};
-constexpr std::int32_t version = 9;
+constexpr std::int32_t version = 10;
 
 /// What the state of a run begins with. Magic and version stand where they stood in version 1 and always will.
 struct Header {
@@ -50,6 +50,7 @@ Bytes head_of(const SavedRun &run, const std::vector<std::int64_t> &sizes) {
   spot::append(head, run.window);
   spot::append(head, run.windows);
   spot::append(head, run.drained_mass);
+  spot::append(head, run.drained_at);
   spot::append(head, run.windows_after_step);
   spot::append(head, run.drained_after_step);
   spot::append(head, sizes);
@@ -67,6 +68,7 @@ std::vector<std::int64_t> take_head(ByteReader reader, SavedRun &run) {
   run.window = reader.take<double>();
   run.windows = reader.take<std::int64_t>();
   run.drained_mass = reader.take<double>();
+  run.drained_at = reader.take_all<std::int64_t>();
   run.windows_after_step = reader.take_all<std::int64_t>();
   run.drained_after_step = reader.take_all<std::int64_t>();
   if (run.windows_after_step.size() != run.drained_after_step.size() || run.drained_after_step.empty())

@@ -16,6 +16,7 @@ struct SavedRun {
   double window = 0.0;                                        // 0: not chosen yet
   std::int64_t windows = 0;
   double drained_mass = 0.0;
+  std::vector<std::int64_t> drained_at;                              // grains that have left through each outlet
   std::vector<std::int64_t> windows_after_step, drained_after_step;  // of which the outflow is a mean
   std::vector<spot::Bytes> parts;                                    // what spot::Drainage::save() gave on every rank
 };

@@ -2,93 +2,29 @@
 #include "spot_command.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <map>
-#include <sstream>
 
 #include "spot/base/errors.hpp"
 #include "spot_calibration.h"
+#include "words.h"
 
 using spot::InvalidParameter;
 using spot::message;
 
 namespace {
 
-/// The words of one command, taken one after the other.
-class Words {
- public:
-  explicit Words(const std::vector<std::string>& words) : words_(words) {}
-
-  bool empty() const { return next_ == words_.size(); }
-  std::size_t taken() const { return next_; }
-
-  std::string keyword() {
-    keyword_ = words_[next_++];
-    return keyword_;
-  }
-
-  std::string value(const char* what) {
-    if (empty()) throw InvalidParameter(message("keyword '", keyword_, "' ends before its value ", what));
-    return words_[next_++];
-  }
-
-  double number(const char* what) {
-    const std::string word = value(what);
-    double result = 0.0;
-    const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // from_chars takes no plus sign
-    const char* first = word.c_str() + (plus ? 1 : 0);
-    const auto [end, error] = std::from_chars(first, word.c_str() + word.size(), result);
-    if (error != std::errc() || end != word.c_str() + word.size() || !std::isfinite(result))
-      throw InvalidParameter(
-          message("'", word, "' is not a finite number, but keyword '", keyword_, "' needs one for ", what));
-    return result;
-  }
-
-  double positive(const char* what) {
-    const double result = number(what);
-    if (result <= 0.0)
-      throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be positive"));
-    return result;
-  }
-
-  double not_negative(const char* what) {
-    const double result = number(what);
-    if (result < 0.0)
-      throw InvalidParameter(message("'", keyword_, "' is ", result, " but ", what, " must be zero or positive"));
-    return result;
-  }
-
-  long long integer(const char* what, long long least) {
-    const std::string word = value(what);
-    long long result = 0;
-    const auto [end, error] = std::from_chars(word.c_str(), word.c_str() + word.size(), result);
-    if (error != std::errc() || end != word.c_str() + word.size() || result < least)
-      throw InvalidParameter(
-          message("'", word, "' after keyword '", keyword_, "' must be a whole number, ", least, " or more: ", what));
-    return result;
-  }
-
- private:
-  const std::vector<std::string>& words_;
-  std::size_t next_ = 0;
-  std::string keyword_;
-};
-
-/// As message(), with all digits that tell two numbers apart.
-template <typename... Parts>
-std::string precise(const Parts&... parts) {
-  std::ostringstream out;
-  out.precision(17);
-  (out << ... << parts);
-  return out.str();
-}
-
 void set_walls(SpotCommand& command, decltype(SpotCommand::walls) walls) {
   if (!std::holds_alternative<std::monostate>(command.walls))
-    throw InvalidParameter("only one of 'box', 'cylinder' and 'region' can be given");
+    throw InvalidParameter("only one of 'box', 'cylinder', 'region' and 'walls' can be given");
   command.walls = std::move(walls);
+}
+
+/// One shape more, or the first.
+void read_shaped_walls(SpotCommand& command, Words& words) {
+  if (!std::holds_alternative<ShapedWalls>(command.walls)) set_walls(command, ShapedWalls());
+  std::get<ShapedWalls>(command.walls).read(words);
 }
 
 int to_int(long long value) { return static_cast<int>(std::min<long long>(value, 1 << 30)); }
@@ -116,18 +52,6 @@ void read_relax(SpotCommand& command, Words& words) {
   }
 }
 
-/// A value that has to be one of some words.
-template <typename Value>
-Value one_of(Words& words, const char* keyword, const std::map<std::string, Value>& allowed) {
-  std::string known;
-  for (const auto& entry : allowed) known += (known.empty() ? "'" : " or '") + entry.first + "'";
-  const std::string word = words.value(known.c_str());
-  const auto found = allowed.find(word);
-  if (found == allowed.end())
-    throw InvalidParameter(message("'", keyword, ' ', word, "' is not known; allowed is ", known));
-  return found->second;
-}
-
 using Reader = std::function<void(SpotCommand&, Words&)>;
 
 const std::map<std::string, Reader>& readers() {
@@ -150,17 +74,17 @@ const std::map<std::string, Reader>& readers() {
          set_walls(c, walls);
        }},
       {"region", [](SpotCommand& c, Words& w) { set_walls(c, RegionWalls{w.value("region-ID")}); }},
-      {"orifice",
-       [](SpotCommand& c, Words& w) {
-         const double x = w.number("x"), y = w.number("y"), z = w.number("z");
-         c.orifice = spot::Orifice{{x, y, z}, w.positive("the orifice's radius")};
-       }},
+      {"walls", read_shaped_walls},
+      {"orifice", [](SpotCommand& c, Words& w) { c.outlets.read_orifice(w); }},
+      {"slot", [](SpotCommand& c, Words& w) { c.outlets.read_slot(w); }},
       {"radius", [](SpotCommand& c, Words& w) { c.spots.radius = w.positive("the spot radius"); }},
       {"influence", [](SpotCommand& c, Words& w) { c.spots.influence = w.positive("the influence"); }},
       {"diffusion", [](SpotCommand& c, Words& w) { c.diffusion_length = w.positive("the diffusion length"); }},
       {"dz", [](SpotCommand& c, Words& w) { c.spots.step_height = w.positive("the step height"); }},
       {"speed", [](SpotCommand& c, Words& w) { c.spots.speed = w.positive("the drift speed"); }},
-      {"injection", [](SpotCommand& c, Words& w) { c.spots.injection_rate = w.positive("the injection rate"); }},
+      {"injection", [](SpotCommand& c, Words& w) { c.outlets.read_injection(w); }},
+      {"beverloo", [](SpotCommand& c, Words& w) { c.outlets.read_beverloo(w); }},
+      {"schedule", [](SpotCommand& c, Words& w) { c.outlets.read_schedule(w); }},
       {"seed",
        [](SpotCommand& c, Words& w) {
          c.spots.seed = static_cast<std::uint64_t>(w.integer("the seed of the random numbers", 1));
@@ -252,11 +176,12 @@ SpotCommand parse_spot_command(const std::vector<std::string>& list) {
     reader->second(command, words);
   }
   require(!std::holds_alternative<std::monostate>(command.walls), "box",
-          "walls are needed, by 'box xlo xhi ylo yhi', 'cylinder x y radius' or 'region ID'");
-  require(command.orifice.has_value(), "orifice", "'orifice x y z radius' says where grains leave and spots enter");
+          "walls are needed, by 'box xlo xhi ylo yhi', 'cylinder x y radius', 'region ID' or 'walls add shape ...'");
+  command.outlets.validate();
   require(command.spots.speed > 0.0, "speed", "the drift speed of spots");
-  require(command.spots.injection_rate.largest() > 0.0, "injection",
-          "spots born per time; outflow / (influence * grains a spot)");
+  if (command.uses_region() && !command.outlets.single_orifice())
+    throw InvalidParameter(
+        "'region' takes one round orifice; with slots or several outlets use 'box', 'cylinder' or 'walls'");
   return command;
 }
 
@@ -300,7 +225,8 @@ void SpotCommand::resolve(double diameter) {
                                           spots.step_height, spots.persistence);
   side_buffer = side_buffer.value_or(calibration::side_buffer * diameter);
   base_buffer = base_buffer.value_or(calibration::base_buffer * diameter);
-  outlet = outlet.value_or(orifice->centre.z());
+  outlet = outlet.value_or(outlets.outlets().height());
+  spots.injection_rate = outlets.injection(spots, diameter);
 }
 
 namespace {
@@ -310,15 +236,15 @@ std::string text_of_walls(const decltype(SpotCommand::walls)& walls) {
     return precise("box ", box->x_low, ' ', box->x_high, ' ', box->y_low, ' ', box->y_high);
   if (const auto* cylinder = std::get_if<CylinderWalls>(&walls))
     return precise("cylinder ", cylinder->x, ' ', cylinder->y, ' ', cylinder->radius);
+  if (const auto* shaped = std::get_if<ShapedWalls>(&walls)) return shaped->text();
   return "region " + std::get<RegionWalls>(walls).id;
 }
 
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
-  const spot::Vector3& centre = orifice->centre;
   return {{"walls", text_of_walls(walls)},
-          {"orifice", precise(centre.x(), ' ', centre.y(), ' ', centre.z(), ' ', orifice->radius)},
+          {"orifice", outlets.text_of_outlets()},
           {"radius", precise(spots.radius)},
           {"profile", spots.profile->name()},
           {"influence", precise(spots.influence)},
@@ -331,7 +257,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"dilatancy", precise(spots.dilatancy)},
           {"surface", precise(spots.surface_exponent)},
           {"nonaffine", precise(spots.nonaffine, ' ', spots.nonaffine_length)},
-          {"injection", precise(spots.injection_rate.largest())},
+          {"injection", outlets.text_of_rates()},
           {"volume", precise(spots.fixed_volume)},
           {"steps", spots.together ? "together" : "poisson"},
           {"seed", precise(spots.seed)},

@@ -8,7 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "spot/geometry/orifice.hpp"
+#include "outlet_command.h"
+#include "shaped_walls.h"
 #include "spot/relaxation/calibration.hpp"
 #include "spot/walk/parameters.hpp"
 
@@ -37,8 +38,8 @@ enum class Accuracy {
 /// What a `fix ID group spot ...` command says, in the units of the deck. Where a length or a time was not
 /// given, it is empty and follows from the grain diameter or the timestep, see resolve().
 struct SpotCommand {
-  std::variant<std::monostate, BoxWalls, CylinderWalls, RegionWalls> walls;
-  std::optional<spot::Orifice> orifice;
+  std::variant<std::monostate, BoxWalls, CylinderWalls, RegionWalls, ShapedWalls> walls;
+  OutletCommand outlets;
   spot::SpotParameters spots;
   spot::RelaxationParameters relaxation;
   std::optional<bool> time_ordered;  // the driver of 2006, not the windowed one
@@ -46,7 +47,7 @@ struct SpotCommand {
   Accuracy accuracy = Accuracy::normal;
   int threads = 1;
   std::optional<double> diffusion_length;
-  std::optional<double> outlet;
+  std::optional<double> outlet;  // height below which grains are removed
   std::optional<double> side_buffer, base_buffer;
   std::optional<double> window;
   double largest_overlap = spot::calibration::largest_overlap_at_start;  // in diameters

@@ -137,9 +137,10 @@ class Damage {
 
 /// What the fix takes for granted of a command that was read.
 void expect_in_range(const SpotCommand& command) {
-  EXPECT_TRUE(command.orifice.has_value());
-  EXPECT_TRUE(command.orifice->centre.allFinite());
-  EXPECT_TRUE(command.orifice->radius > 0.0 && std::isfinite(command.orifice->radius));
+  for (const spot::Outlet& outlet : command.outlets.outlets()) {
+    EXPECT_TRUE(outlet.centre.allFinite());
+    EXPECT_TRUE(outlet.hole->widest_radius() > 0.0 && std::isfinite(outlet.hole->widest_radius()));
+  }
   EXPECT_FALSE(std::holds_alternative<std::monostate>(command.walls));
   EXPECT_TRUE(std::isfinite(*command.outlet));
   EXPECT_TRUE(*command.side_buffer >= 0.0 && *command.base_buffer >= 0.0);

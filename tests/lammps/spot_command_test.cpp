@@ -54,8 +54,8 @@ TEST(SpotCommand, ReadsEveryKeyword) {
       "critical 0.58 1.5 dilatancy 0.1 surface 3 nonaffine 0.14 0.5 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
-  EXPECT_EQ(c.orifice->centre, spot::Vector3(1, -2, 3));
-  EXPECT_EQ(c.orifice->radius, 4.0);
+  EXPECT_EQ(c.outlets.single_orifice()->centre, spot::Vector3(1, -2, 3));
+  EXPECT_EQ(c.outlets.single_orifice()->radius, 4.0);
   EXPECT_EQ(c.spots.radius, 2.5);
   EXPECT_EQ(c.spots.influence, 1e-3);
   EXPECT_EQ(c.diffusion_length, 1.5);
@@ -69,7 +69,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.spots.nonaffine, 0.14);
   EXPECT_EQ(c.spots.nonaffine_length, 0.5);
   EXPECT_EQ(c.spots.speed, 2.0);
-  EXPECT_EQ(c.spots.injection_rate.largest(), 300.0);
+  EXPECT_EQ(c.outlets.injection(c.spots, 1.0).largest(), 300.0);
   EXPECT_EQ(c.spots.seed, 17U);
   EXPECT_EQ(c.outlet, -1.5);
   EXPECT_EQ(c.side_buffer, 0.5);
@@ -353,7 +353,10 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "spot",      "global",      "silo",
                                                "peratom",   "yes",         "no",
                                                "critical",  "dilatancy",   "surface",
-                                               "nonaffine", "closing"};
+                                               "nonaffine", "closing",     "slot",
+                                               "beverloo",  "schedule",    "walls",
+                                               "add",       "cut",         "block",
+                                               "cone",      "z",           "plane"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -366,17 +369,16 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
       SpotCommand command = parse_spot_command(words);
       ++read;
       EXPECT_GT(command.spots.speed, 0.0);
-      EXPECT_GT(command.spots.injection_rate.largest(), 0.0);
       EXPECT_GE(command.average, 1);
-      EXPECT_TRUE(command.orifice.has_value());
       EXPECT_GE(command.threads, 1);
       EXPECT_GE(command.relaxation.every, 0);
       EXPECT_GE(command.spots.fixed_volume, 0.0);
       EXPECT_GE(command.spots.critical_fraction, 0.0);
       EXPECT_GE(command.spots.dilatancy, 0.0);
       command.resolve(1.0);
+      EXPECT_GE(command.spots.injection_rate.largest(), 0.0);
       EXPECT_GT(command.relaxation.tolerance, 0.0);
-    } catch (const InvalidParameter& error) {
+    } catch (const spot::Error& error) {
       EXPECT_STRNE(error.what(), "");
     }
   }
@@ -431,7 +433,8 @@ TEST(SpotDocumentation, ExamplesAreValid) {
 
 TEST(SpotDocumentation, SaysWhichKeywordsAreRequired) {
   EXPECT_THAT(section("Syntax", "Examples"),
-              HasSubstr("*orifice*, *speed*, *injection* and one of *box*, *cylinder*, *region* are required"));
+              HasSubstr("*speed*, one of *orifice* and *slot*, one of *injection* and *beverloo*, and one of *box*, "
+                        "*cylinder*, *region* and\n  *walls* are required"));
   for (const std::string required : {"box -5 5 -4 4", "orifice 1 2 3 3.5", "speed 3.2", "injection 388"}) {
     std::string without = complete;
     without.erase(without.find(required), required.size());
@@ -465,7 +468,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"nonaffine", in(c.spots.nonaffine, "")},
       {"steps", c.spots.together ? "together" : "poisson"},
       {"threads", std::to_string(c.threads)},
-      {"outlet", *c.outlet == c.orifice->centre.z() ? "the height of the orifice" : "elsewhere"},
+      {"outlet", *c.outlet == c.outlets.outlets().height() ? "the height of the orifice" : "elsewhere"},
       {"buffer", in(*c.side_buffer / d, " d ") + in(*c.base_buffer / d, " d")},
       {"window", "see above"},
       {"accuracy", std::string(c.accuracy == Accuracy::normal ? "normal" : "another") +

@@ -35,7 +35,8 @@ def test_missing_keyword(tmp_path, keyword):
 
 @pytest.mark.parametrize("words, said", [
     ("inflence 1e-2", ["unknown keyword 'inflence'", "influence injection"]),
-    ("7", ["unknown keyword '7'"]),
+    ("7", ["2 rates but there is 1 outlet"]),
+    ("seed 1 7", ["unknown keyword '7'"]),
     ("dz", ["'dz' ends before its value"]),
     ("buffer 1", ["'buffer' ends before its value", "base"]),
     ("radius 2.6d", ["'2.6d' is not a finite number", "'radius'"]),
@@ -90,8 +91,8 @@ def test_missing_keyword(tmp_path, keyword):
     ("window 0.03", ["timestep 0.1", "whole number of windows of 0.03"]),
     ("window 0.2", ["timestep 0.1", "whole number of windows of 0.2"]),
     ("window 1e-300", ["timestep 0.1", "whole number of windows"]),
-    ("cylinder 0 0 4", ["only one of 'box', 'cylinder' and 'region'"]),
-    ("region silo", ["only one of 'box', 'cylinder' and 'region'"]),
+    ("cylinder 0 0 4", ["only one of 'box', 'cylinder', 'region' and 'walls'"]),
+    ("region silo", ["only one of 'box', 'cylinder', 'region' and 'walls'"]),
     ("outlet 0.5", ["outlet is at z = 0.5", "not above the orifice, 0"]),
     ("outlet -5.3", ["outlet is at z = -5.3", "simulation box begins at -4"]),
     ("radius 1.2 dz 0.1 outlet -2.5", ["outlet is at z = -2.5", "must be above -2.35", "reach of newborn spots"]),

@@ -36,6 +36,11 @@ Vector3 RoundHole::point(double margin, double first, double second) const {
 
 double RoundHole::farthest(const Vector3& place) const { return length(place.x(), place.y()) + radius_; }
 
+double RoundHole::discharge(const BeverlooLaw& law, double diameter) const {
+  const double wide = 2.0 * radius_ - law.margin * diameter;
+  return wide > 0.0 ? law.round * wide * wide * std::sqrt(wide) : 0.0;
+}
+
 Solid RoundHole::column(const Vector3& centre) const { return cylinder(centre, Vector3::UnitZ(), radius_); }
 
 }  // namespace spot

@@ -52,6 +52,12 @@ double Slot::farthest(const Vector3& place) const {
   return length(std::abs(place.x()) + half_.x(), std::abs(place.y()) + half_.y());
 }
 
+double Slot::discharge(const BeverlooLaw& law, double diameter) const {
+  const double less = law.margin * diameter, wide = 2.0 * std::min(half_.x(), half_.y()) - less,
+               length = 2.0 * std::max(half_.x(), half_.y()) - less;
+  return wide > 0.0 ? law.slot * length * wide * std::sqrt(wide) : 0.0;
+}
+
 Solid Slot::column(const Vector3& centre) const {
   const auto side = [&](const Vector3& out) { return half_space(centre + half_.cwiseProduct(out), -out); };
   return side(Vector3::UnitX()) & side(-Vector3::UnitX()) & side(Vector3::UnitY()) & side(-Vector3::UnitY());

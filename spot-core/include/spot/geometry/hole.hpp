@@ -4,6 +4,7 @@
 #include <string>
 
 #include "spot/base/vector.hpp"
+#include "spot/geometry/beverloo.hpp"
 #include "spot/geometry/solid.hpp"
 
 namespace spot {
@@ -42,6 +43,10 @@ class Hole {
 
   /// From a place to that place in the hole which is farthest from it (length).
   virtual double farthest(const Vector3& place) const = 0;
+
+  /// By Beverloo's law, how many grains of a diameter leave through it per time, over their number per volume and the
+  /// square root of gravity (length^2.5); 0 where it is too narrow.
+  virtual double discharge(const BeverlooLaw& law, double diameter) const = 0;
 
   /// All that is above and below the hole, with this place as its centre.
   virtual Solid column(const Vector3& centre) const = 0;

@@ -20,6 +20,7 @@ class RoundHole : public Hole {
   double equivalent_radius() const override { return radius_; }
   double half_width(int) const override { return radius_; }
   double farthest(const Vector3& place) const override;
+  double discharge(const BeverlooLaw& law, double diameter) const override;
   Solid column(const Vector3& centre) const override;
 
  private:

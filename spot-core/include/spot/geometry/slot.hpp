@@ -20,6 +20,7 @@ class Slot : public Hole {
   double equivalent_radius() const override;
   double half_width(int axis) const override { return half_[axis]; }
   double farthest(const Vector3& place) const override;
+  double discharge(const BeverlooLaw& law, double diameter) const override;
   Solid column(const Vector3& centre) const override;
 
  private:

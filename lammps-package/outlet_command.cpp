@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "outlet_command.h"
+
+#include <cmath>
+#include <memory>
+
+#include "spot/geometry/round_hole.hpp"
+#include "spot/geometry/slot.hpp"
+#include "words.h"
+
+using spot::InvalidParameter;
+using spot::message;
+
+namespace {
+
+/// Of flowing grains (docs/model.md). Beverloo's law is used with the bulk density.
+constexpr double packing_fraction = 0.58;
+
+double volume_of_grain(double diameter) { return 3.14159265358979323846 / 6.0 * diameter * diameter * diameter; }
+
+}  // namespace
+
+void OutletCommand::add(const spot::Outlet& outlet, const std::string& text) {
+  outlets_.push_back(outlet);
+  texts_.push_back(text);
+}
+
+void OutletCommand::read_orifice(Words& words) {
+  const double x = words.number("x"), y = words.number("y"), z = words.number("z"),
+               radius = words.positive("the orifice's radius");
+  last_orifice_ = spot::Orifice{{x, y, z}, radius};
+  add(*last_orifice_, precise(x, ' ', y, ' ', z, ' ', radius));
+}
+
+void OutletCommand::read_slot(Words& words) {
+  const double x = words.number("x"), y = words.number("y"), z = words.number("z"),
+               along_x = words.positive("the slot's width along x"),
+               along_y = words.positive("the slot's width along y");
+  add({{x, y, z}, std::make_shared<spot::Slot>(along_x, along_y)},
+      precise("slot ", x, ' ', y, ' ', z, ' ', along_x, ' ', along_y));
+}
+
+void OutletCommand::read_injection(Words& words) {
+  rates_ = {words.not_negative("the injection rate")};
+  while (words.next_is_number()) rates_.push_back(words.not_negative("the injection rate"));
+}
+
+void OutletCommand::read_beverloo(Words& words) {
+  gravity_ = words.positive("the acceleration of gravity");
+  law_ = {};
+  if (words.next_is_number()) {
+    law_.round = words.positive("C of round outlets");
+    law_.margin = words.not_negative("k");
+  }
+  if (words.next_is_number()) law_.slot = words.positive("C of slots");
+}
+
+void OutletCommand::read_schedule(Words& words) {
+  const auto outlet = static_cast<std::size_t>(words.integer("the number of an outlet", 1));
+  std::vector<Step>& steps = schedules_[outlet];
+  if (!steps.empty()) throw InvalidParameter(message("'schedule ", outlet, "' is given twice"));
+  do {
+    const double time = words.not_negative("the time of a step of the schedule");
+    if (!steps.empty() && time <= steps.back().time)
+      throw InvalidParameter(message("'schedule ", outlet, "' goes from time ", steps.back().time, " to ", time,
+                                     " but times must increase"));
+    steps.push_back({time, words.not_negative("the factor on the rate")});
+  } while (words.next_is_number());
+}
+
+void OutletCommand::validate() const {
+  if (outlets_.empty())
+    throw InvalidParameter(
+        "keyword 'orifice' is missing: 'orifice x y z radius' or 'slot x y z width_x width_y' says where grains leave "
+        "and spots enter");
+  if (gravity_ && !rates_.empty()) throw InvalidParameter("only one of 'injection' and 'beverloo' can be given");
+  if (!gravity_ && rates_.empty())
+    throw InvalidParameter(
+        "keyword 'injection' is missing: spots born per time at each outlet, outflow / (influence * grains a spot); or "
+        "'beverloo g' predicts it");
+  if (!gravity_ && rates_.size() != outlets_.size())
+    throw InvalidParameter(
+        message("'injection' has ", rates_.size(), rates_.size() == 1 ? " rate" : " rates",
+                outlets_.size() == 1 ? " but there is " : " but there are ", outlets_.size(),
+                outlets_.size() == 1 ? " outlet: give" : " outlets: give one for each, in the order of the outlets"));
+  if (!schedules_.empty() && schedules_.rbegin()->first > outlets_.size())
+    throw InvalidParameter(message("'schedule ", schedules_.rbegin()->first,
+                                   "' is for an outlet that is not there: ", "they count from 1 to ", outlets_.size()));
+  if (rates_ == std::vector<double>{0.0})
+    throw InvalidParameter("'injection' is 0 but the injection rate must be positive");
+  static_cast<void>(outlets());
+}
+
+std::optional<spot::Orifice> OutletCommand::single_orifice() const {
+  return outlets_.size() == 1 ? last_orifice_ : std::nullopt;
+}
+
+spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, double diameter) const {
+  std::vector<double> rates = rates_;
+  for (const double grains : predicted_outflow(diameter))
+    rates.push_back(grains * volume_of_grain(diameter) / spots.missing_volume(diameter));
+  std::vector<spot::RateSchedule> all;
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    std::vector<spot::RateStep> steps;
+    if (const auto schedule = schedules_.find(k + 1); schedule != schedules_.end())
+      for (const Step& step : schedule->second) steps.push_back({step.time, step.factor * rates[k]});
+    if (steps.empty() || steps.front().time > 0.0) steps.insert(steps.begin(), {0.0, rates[k]});
+    all.emplace_back(steps);
+  }
+  return spot::Injection(all);
+}
+
+std::vector<double> OutletCommand::predicted_outflow(double diameter) const {
+  std::vector<double> outflow;
+  if (!gravity_) return outflow;
+  const double per_volume = packing_fraction / volume_of_grain(diameter);
+  for (const spot::Outlet& outlet : outlets_) {
+    outflow.push_back(per_volume * std::sqrt(*gravity_) * outlet.hole->discharge(law_, diameter));
+    if (outflow.back() == 0.0)
+      throw InvalidParameter(message("Beverloo's law predicts no outflow through the ", outlet.name(),
+                                     ", which is not wider than ", law_.margin, " diameters of ", diameter));
+  }
+  return outflow;
+}
+
+std::vector<std::string> OutletCommand::doubts(double diameter) const {
+  std::vector<std::string> doubts;
+  if (!gravity_) return doubts;
+  for (const spot::Outlet& outlet : outlets_)
+    if (const double width = 2.0 * outlet.hole->widest_radius() / diameter; width < spot::BeverlooLaw::least_width)
+      doubts.push_back(message("the ", outlet.name(), " is ", width, " diameters wide: below ",
+                               spot::BeverlooLaw::least_width,
+                               " grains may clog, which neither Beverloo's law nor the spot model knows"));
+  return doubts;
+}
+
+std::string OutletCommand::text_of_outlets() const {
+  std::string text;
+  for (const std::string& one : texts_) text += (text.empty() ? "" : "; ") + one;
+  return text;
+}
+
+std::string OutletCommand::text_of_rates() const {
+  std::string text = gravity_ ? precise("beverloo ", *gravity_, ' ', law_.round, ' ', law_.margin, ' ', law_.slot) : "";
+  for (const double rate : rates_) text += (text.empty() ? "" : " ") + precise(rate);
+  for (const auto& [outlet, steps] : schedules_) {
+    text += message("; schedule ", outlet);
+    for (const Step& step : steps) text += precise(' ', step.time, ' ', step.factor);
+  }
+  return text;
+}

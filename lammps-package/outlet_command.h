@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#ifndef SPOT_OUTLET_COMMAND_H
+#define SPOT_OUTLET_COMMAND_H
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spot/geometry/beverloo.hpp"
+#include "spot/geometry/outlets.hpp"
+#include "spot/walk/parameters.hpp"
+
+class Words;
+
+/// What a command says of the outlets of a silo: where they are (`orifice`, `slot`), how many spots enter (`injection`
+/// or `beverloo`), and when they open and close (`schedule`). All that reads throws spot::InvalidParameter that names
+/// the offending word and what is allowed, or spot::InvalidContainer for numbers that make no outlet.
+class OutletCommand {
+ public:
+  void read_orifice(Words& words);
+  void read_slot(Words& words);
+  void read_injection(Words& words);
+  void read_beverloo(Words& words);
+  void read_schedule(Words& words);
+
+  /// Throws spot::InvalidParameter if something is missing, or does not fit together; and as spot::Outlets does.
+  void validate() const;
+
+  /// In the order in which they were given.
+  spot::Outlets outlets() const { return spot::Outlets(outlets_); }
+
+  /// If there is one outlet, and it is round.
+  std::optional<spot::Orifice> single_orifice() const;
+
+  /// Births at each outlet. With `beverloo` they are as many as carry the outflow that is predicted.
+  spot::Injection injection(const spot::SpotParameters& spots, double diameter) const;
+
+  /// By Beverloo's law, the grains that leave through each outlet per time; none without `beverloo`. Throws
+  /// spot::InvalidParameter, naming the outlet, if one is too narrow for the law.
+  std::vector<double> predicted_outflow(double diameter) const;
+
+  /// What is to be said of the outflow that is predicted: where the law is beyond its range.
+  std::vector<std::string> doubts(double diameter) const;
+
+  /// As they were given; all numbers with all digits.
+  std::string text_of_outlets() const;
+  std::string text_of_rates() const;
+
+ private:
+  /// From a time on, an outlet has so many times its rate.
+  struct Step {
+    double time, factor;
+  };
+
+  void add(const spot::Outlet& outlet, const std::string& text);
+
+  std::vector<spot::Outlet> outlets_;
+  std::vector<std::string> texts_;
+  std::optional<spot::Orifice> last_orifice_;
+  std::vector<double> rates_;
+  std::optional<double> gravity_;  // for Beverloo's law
+  spot::BeverlooLaw law_;
+  std::map<std::size_t, std::vector<Step>> schedules_;  // by the number of the outlet, from 1 on
+};
+
+#endif

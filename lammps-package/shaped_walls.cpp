@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "shaped_walls.h"
+
+#include <functional>
+#include <limits>
+
+#include "spot/geometry/shapes.hpp"
+#include "words.h"
+
+using spot::InvalidParameter;
+using spot::message;
+using spot::Solid;
+using spot::Vector3;
+
+namespace {
+
+struct BoundedSolid {
+  Solid solid;
+  Vector3 low, high;
+};
+
+Vector3 read_vector(Words& words, const char* x, const char* y, const char* z) {
+  const double at_x = words.number(x), at_y = words.number(y);
+  return {at_x, at_y, words.number(z)};
+}
+
+/// The axis of a cylinder or cone: along x, y or z, and where it passes the other two.
+struct Axis {
+  int along, first, second;
+  double c1, c2;
+
+  explicit Axis(Words& words) {
+    along = one_of<int>(words, "walls", {{"x", 0}, {"y", 1}, {"z", 2}});
+    first = along == 0 ? 1 : 0;
+    second = along == 2 ? 1 : 2;
+    c1 = words.number("c1");
+    c2 = words.number("c2");
+  }
+
+  Vector3 at(double height) const {
+    Vector3 place;
+    place[along] = height;
+    place[first] = c1;
+    place[second] = c2;
+    return place;
+  }
+
+  /// From `low` to `high` along it, and up to a radius around it.
+  BoundedSolid bounded(const Solid& solid, double low, double high, double radius) const {
+    Vector3 around = Vector3::Constant(radius);
+    around[along] = 0.0;
+    return {solid, at(low) - around, at(high) + around};
+  }
+};
+
+void require_increasing(const char* shape, double low, double high) {
+  if (!(low < high))
+    throw InvalidParameter(message("'walls ... ", shape, "' needs lo < hi, but they are ", low, " and ", high));
+}
+
+BoundedSolid read_block(Words& words) {
+  Vector3 low, high;
+  const char* names[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = words.number(names[2 * axis]);
+    high[axis] = words.number(names[2 * axis + 1]);
+  }
+  return {spot::block(low, high), low, high};
+}
+
+BoundedSolid read_cylinder(Words& words) {
+  const Axis axis(words);
+  const double radius = words.positive("the cylinder's radius"), low = words.number("lo"), high = words.number("hi");
+  require_increasing("cylinder", low, high);
+  return axis.bounded(spot::cylinder_between(axis.at(low), axis.at(high), radius), low, high, radius);
+}
+
+BoundedSolid read_cone(Words& words) {
+  const Axis axis(words);
+  const double radius_low = words.not_negative("the cone's radius at lo"),
+               radius_high = words.not_negative("the cone's radius at hi"), low = words.number("lo"),
+               high = words.number("hi");
+  require_increasing("cone", low, high);
+  return axis.bounded(spot::cone_between(axis.at(low), radius_low, axis.at(high), radius_high), low, high,
+                      std::max(radius_low, radius_high));
+}
+
+BoundedSolid read_sphere(Words& words) {
+  const Vector3 centre = read_vector(words, "x", "y", "z");
+  const double radius = words.positive("the sphere's radius");
+  return {spot::sphere(centre, radius), centre.array() - radius, centre.array() + radius};
+}
+
+BoundedSolid read_plane(Words& words) {
+  const Vector3 point = read_vector(words, "px", "py", "pz"), normal = read_vector(words, "nx", "ny", "nz");
+  const Vector3 endless = Vector3::Constant(std::numeric_limits<double>::infinity());
+  return {spot::half_space(point, normal), -endless, endless};
+}
+
+}  // namespace
+
+void ShapedWalls::read(Words& words) {
+  using Reader = std::function<BoundedSolid(Words&)>;
+  const std::size_t first = words.taken();
+  const bool add = one_of<bool>(words, "walls", {{"add", true}, {"cut", false}});
+  const BoundedSolid shape = one_of<Reader>(words, add ? "walls add" : "walls cut",
+                                            {{"block", read_block},
+                                             {"cone", read_cone},
+                                             {"cylinder", read_cylinder},
+                                             {"plane", read_plane},
+                                             {"sphere", read_sphere}})(words);
+  if (!add && !solid_) throw InvalidParameter("'walls cut' has nothing to cut from: 'walls add' comes first");
+  text_ += (text_.empty() ? "" : " ") + words.text_since(first);
+  if (!add) {
+    solid_ = *solid_ & ~shape.solid;
+    return;
+  }
+  low_ = solid_ ? low_.cwiseMin(shape.low) : shape.low;
+  high_ = solid_ ? high_.cwiseMax(shape.high) : shape.high;
+  solid_ = solid_ ? *solid_ | shape.solid : shape.solid;
+}

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Outlets, their rates and schedules, and walls made of shapes: what the words of `fix spot` make of them.
+#include "outlet_command.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iterator>
+#include <sstream>
+
+#include "spot/base/errors.hpp"
+#include "spot_command.h"
+
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+/// A command with these walls and outlets, resolved for grains of a diameter.
+SpotCommand command_of(const std::string& walls, const std::string& outlets, double diameter = 1.0) {
+  SpotCommand command = parse_spot_command(words_of("speed 3.2 volume 77 " + walls + " " + outlets));
+  command.resolve(diameter);
+  return command;
+}
+
+const std::string box = "box -20 20 -4 4";
+
+std::string error_of(const std::string& walls, const std::string& outlets) {
+  try {
+    command_of(walls, outlets);
+  } catch (const spot::Error& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no error: " << walls << ' ' << outlets;
+  return {};
+}
+
+TEST(OutletCommand, OutletsKeepTheirOrder) {
+  const SpotCommand c = command_of(box, "slot 5 0 0 6 8 injection 300 100 orifice -5 0 0 3");
+  const spot::Outlets outlets = c.outlets.outlets();
+  ASSERT_EQ(outlets.size(), 2u);
+  EXPECT_EQ(outlets[0].name(), "slot of 6 by 8 at (5, 0, 0)");
+  EXPECT_EQ(outlets[1].name(), "orifice of radius 3 at (-5, 0, 0)");
+  EXPECT_EQ(c.spots.injection_rate.largest(0), 300.0);
+  EXPECT_EQ(c.spots.injection_rate.largest(1), 100.0);
+  EXPECT_FALSE(c.outlets.single_orifice().has_value());
+  EXPECT_EQ(c.outlets.text_of_outlets(), "slot 5 0 0 6 8; -5 0 0 3");
+}
+
+TEST(OutletCommand, SchedulesOpenAndCloseAnOutlet) {
+  const SpotCommand c =
+      command_of(box, "orifice -5 0 0 3 orifice 5 0 0 3 injection 300 100 schedule 2 0 0 1.5 1 4 0.5 schedule 1 2 0");
+  const spot::Injection& rates = c.spots.injection_rate;
+  // 300 per time up to 1.5, 400 up to 2, 100 up to 4, then 50.
+  EXPECT_EQ(rates.largest(), 400.0);
+  EXPECT_DOUBLE_EQ(rates.next_birth(0.0, 300.0), 1.0);
+  EXPECT_DOUBLE_EQ(rates.next_birth(0.0, 450.0 + 200.0), 2.0);
+  EXPECT_DOUBLE_EQ(rates.next_birth(0.0, 450.0 + 200.0 + 200.0 + 50.0), 5.0);
+  EXPECT_EQ(rates.outlet_of_birth(1.0, 0.99), 0u);
+  EXPECT_EQ(rates.outlet_of_birth(3.0, 0.01), 1u);
+}
+
+TEST(OutletCommand, RatesFollowFromBeverloosLaw) {
+  // F = C (6 phi / pi) (D/d - k)^2.5 for round holes, with phi = 0.58; C (6 phi / pi) (L/d - k) (W/d - k)^1.5 for
+  // slots.
+  const double per_volume = 6.0 * 0.58 / 3.14159265358979;
+  const SpotCommand c = command_of(box, "orifice -8 0 0 4 slot 8 0 0 6 8 beverloo 1");
+  const std::vector<double> outflow = c.outlets.predicted_outflow(1.0);
+  ASSERT_EQ(outflow.size(), 2u);
+  EXPECT_NEAR(outflow[0], 0.58 * per_volume * std::pow(6.6, 2.5), 1e-9);
+  EXPECT_NEAR(outflow[1], 1.03 * per_volume * 6.6 * std::pow(4.6, 1.5), 1e-9);
+  // Each spot carries w N grains.
+  EXPECT_NEAR(c.spots.injection_rate.largest(0), outflow[0] / (c.spots.influence * 77), 1e-6);
+  // In other units: d = 0.003, g = 9.81, by the unit of time sqrt(d / g).
+  const std::vector<double> in_metres =
+      command_of("box -0.06 0.06 -0.012 0.012", "orifice 0 0 0 0.012 beverloo 9.81", 0.003)
+          .outlets.predicted_outflow(0.003);
+  EXPECT_NEAR(in_metres[0] * std::sqrt(0.003 / 9.81), outflow[0], 1e-9);
+  // Its constants.
+  EXPECT_NEAR(command_of(box, "orifice 0 0 0 4 beverloo 1 0.5 2").outlets.predicted_outflow(1.0)[0],
+              0.5 * per_volume * std::pow(6.0, 2.5), 1e-9);
+  EXPECT_NEAR(command_of(box, "slot 0 0 0 8 8 beverloo 1 0.5 2 2").outlets.predicted_outflow(1.0)[0],
+              2.0 * per_volume * std::pow(6.0, 2.5), 1e-9);
+  EXPECT_TRUE(command_of(box, "orifice 0 0 0 4 injection 300").outlets.predicted_outflow(1.0).empty());
+}
+
+TEST(OutletCommand, SaysWhereBeverloosLawIsBeyondItsRange) {
+  EXPECT_TRUE(command_of(box, "orifice 0 0 0 4 beverloo 1").outlets.doubts(1.0).empty());
+  const auto doubts = command_of(box, "orifice 0 0 0 2.8 beverloo 1").outlets.doubts(1.0);
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_THAT(doubts[0], AllOf(HasSubstr("orifice of radius 2.8"), HasSubstr("5.6 diameters"), HasSubstr("clog")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 beverloo 1 0.58 8"),
+              AllOf(HasSubstr("no outflow"), HasSubstr("not wider than 8")));
+}
+
+TEST(OutletCommand, MistakesAreNamed) {
+  EXPECT_THAT(error_of(box, "injection 300"), AllOf(HasSubstr("'orifice' is missing"), HasSubstr("'slot")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4"), AllOf(HasSubstr("'injection' is missing"), HasSubstr("'beverloo g'")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 beverloo 1"), HasSubstr("only one of"));
+  EXPECT_THAT(error_of(box, "orifice -5 0 0 3 orifice 5 0 0 3 injection 300"), HasSubstr("1 rate but there are 2"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 300 20"), HasSubstr("2 rates but there is 1"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection -1"), HasSubstr("zero or positive"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 0"), HasSubstr("must be positive"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 orifice 4 0 0 3 injection 1 1"), HasSubstr("overlap"));
+  EXPECT_THAT(error_of(box, "orifice -5 0 0 3 orifice 5 0 1 3 injection 1 1"), HasSubstr("height"));
+  EXPECT_THAT(error_of(box, "slot 0 0 0 6 injection 1"), HasSubstr("not a finite number"));
+  EXPECT_THAT(error_of(box, "slot 0 0 0 6 0 injection 1"), HasSubstr("must be positive"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 2 0 1"),
+              AllOf(HasSubstr("schedule 2"), HasSubstr("1 to 1")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 1 0 0.5 1"),
+              AllOf(HasSubstr("from time 1 to 0.5"), HasSubstr("must increase")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 -1 0"), HasSubstr("zero or positive"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 1 -2"), HasSubstr("zero or positive"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 1 0 schedule 1 2 0"), HasSubstr("given twice"));
+  EXPECT_THAT(error_of("region silo", "slot 0 0 0 6 8 injection 1"), HasSubstr("'region' takes one round orifice"));
+  EXPECT_THAT(error_of("region silo", "orifice -5 0 0 3 orifice 5 0 0 3 injection 1 1"),
+              HasSubstr("one round orifice"));
+}
+
+spot::Solid solid_of(const std::string& walls) {
+  return std::get<ShapedWalls>(command_of(walls, "orifice 0 0 0 4 injection 300").walls).solid();
+}
+
+TEST(ShapedWalls, ShapesAreAddedAndCutInTheirOrder) {
+  const std::string hopper = "walls add cone z 0 0 4 12 0 14 walls add cylinder z 0 0 12 14 40";
+  const spot::Solid silo = solid_of(hopper);
+  EXPECT_TRUE(silo.contains({0, 0, 1}));
+  EXPECT_FALSE(silo.contains({6, 0, 1})) << "beside the cone";
+  EXPECT_TRUE(silo.contains({11, 0, 20}));
+  const spot::Solid with_insert = solid_of(hopper + " walls cut sphere 0 0 20 3");
+  EXPECT_FALSE(with_insert.contains({0, 0, 18}));
+  EXPECT_TRUE(with_insert.contains({0, 0, 24}));
+  EXPECT_TRUE(solid_of(hopper + " walls cut sphere 0 0 20 3 walls add block -1 1 -1 1 19 21").contains({0, 0, 20}));
+}
+
+TEST(ShapedWalls, AxesLieAsInRegionsOfLammps) {
+  const spot::Solid along_x = solid_of("walls add cylinder x 1 20 6 -30 30 walls add block -20 20 -4 4 0 20");
+  EXPECT_TRUE(along_x.contains({25, 1, 20}));
+  EXPECT_FALSE(along_x.contains({25, 20, 1}));
+  const spot::Solid along_y = solid_of("walls add cylinder y 1 20 6 -30 30 walls add block -20 20 -4 4 0 20");
+  EXPECT_TRUE(along_y.contains({1, 25, 20}));
+  const spot::Solid wedge =
+      solid_of("walls add block -10 10 -4 4 0 12 walls cut plane 4 0 0 2 0 -1 walls cut plane -4 0 0 -2 0 -1");
+  EXPECT_FALSE(wedge.contains({9, 0, 1}));
+  EXPECT_TRUE(wedge.contains({9, 0, 11}));
+}
+
+TEST(ShapedWalls, BoundsAndTextAreOfAllShapes) {
+  const SpotCommand c =
+      command_of("walls add cone z 0 1 4 12 0 14 walls add block -20 5 -4 4 14 40 walls cut sphere 0 0 20 1",
+                 "orifice 0 1 0 4 injection 300");
+  const ShapedWalls& walls = std::get<ShapedWalls>(c.walls);
+  EXPECT_EQ(walls.low(), spot::Vector3(-20, -11, 0));
+  EXPECT_EQ(walls.high(), spot::Vector3(12, 13, 40));
+  EXPECT_EQ(walls.text(), "add cone z 0 1 4 12 0 14 add block -20 5 -4 4 14 40 cut sphere 0 0 20 1");
+  EXPECT_EQ(c.settings().front().second, walls.text());
+}
+
+TEST(ShapedWalls, MistakesAreNamed) {
+  const std::string outlet = "orifice 0 0 0 4 injection 300";
+  EXPECT_THAT(error_of("walls", outlet), HasSubstr("'walls orifice' is not known"));
+  EXPECT_THAT(error_of("walls add", outlet), AllOf(HasSubstr("'walls add orifice'"), HasSubstr("'block'")));
+  EXPECT_THAT(error_of("walls add mesh", outlet), AllOf(HasSubstr("'walls add mesh'"), HasSubstr("'cone'")));
+  EXPECT_THAT(error_of("walls add cone w", outlet), HasSubstr("'x' or 'y' or 'z'"));
+  EXPECT_THAT(error_of("walls add cone z 0 0 4 -1 0 9", outlet), HasSubstr("zero or positive"));
+  EXPECT_THAT(error_of("walls add cone z 0 0 4 9 9 0", outlet), HasSubstr("lo < hi"));
+  EXPECT_THAT(error_of("walls add cylinder z 0 0 0 0 9", outlet), HasSubstr("must be positive"));
+  EXPECT_THAT(error_of("walls add block 0 1 0 1 1 0", outlet), HasSubstr("each coordinate must increase"));
+  EXPECT_THAT(error_of("walls add plane 0 0 0 0 0 0", outlet), HasSubstr("not zero"));
+  EXPECT_THAT(error_of("walls cut sphere 0 0 0 1", outlet), HasSubstr("nothing to cut from"));
+  EXPECT_THAT(error_of("walls add sphere 0 0 0 9 box 0 1 0 1", outlet), HasSubstr("only one of"));
+  EXPECT_THAT(error_of("cylinder 0 0 5 walls add sphere 0 0 0 9", outlet), HasSubstr("only one of"));
+}
+
+}  // namespace
