@@ -23,7 +23,7 @@ def split_word(word):
     """(label, path) of NAME=RUN or RUN."""
     name, equals, path = word.partition("=")
     if os.path.exists(word) or not equals:
-        return os.path.basename(os.path.normpath(word)), word
+        return os.path.basename(os.path.abspath(word)), word
     return name, path
 
 
