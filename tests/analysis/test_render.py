@@ -129,7 +129,18 @@ def test_a_silo_periodic_along_y_is_drawn(tmp_path):
     scene = {key: value for key, value in SCENE.items() if key != "half_depth_y"}
     folder = bare(tmp_path / "a", scene={**scene, "half_period_y": 8.0})
     run = Run("run", str(folder))
-    assert run.is_periodic_y and run.container.half_depth == 8
+    assert run.container.half_depth == 8 and not run.has_front
+
+
+def test_a_scene_of_units_only(tmp_path):
+    """Times in tau and no walls, so that a hopper can be drawn beside DEM's."""
+    units = {"diameter": 0.004, "gravity": 10.0, "timestep": 0.01}
+    run = Run("run", str(bare(tmp_path / "a", "id x y z", units)))
+    assert run.container is None and not run.has_front
+    start, end = run.snapshots()
+    assert (start.time, end.time) == (0, pytest.approx(50)) and np.allclose(start.positions[1], [1, 0, 0.25])
+    done = script("render.py", bare(tmp_path / "b", scene={**units, "half_width_x": 1.0}), "-o", tmp_path / "x.png")
+    assert done.returncode == 1 and "scene key 'half_depth_y' is missing" in done.stderr
 
 
 def test_a_grain_is_drawn_in_its_place_and_colour():

@@ -16,7 +16,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(
         description=DESCRIPTION, epilog="RUN is a folder, file or wildcard of LAMMPS or LIGGGHTS dumps, what --keep wrote, or "
         "statistics of measure.py (a picture of the front layer every 10 tau). With a scene.json beside the dumps times are in "
-        "tau, and walls are drawn; without, times are steps.")
+        "tau, and the walls in it are drawn; without, times are steps.")
     parser.add_argument("runs", nargs="+", metavar="[NAME=]RUN", help="from left to right; snapshots that all of them have are drawn")
     parser.add_argument("-o", "--output", metavar="FILE", help="x.png: all times in one row; x.gif, x.webp, x.mp4: an animation; "
                         "x.vtk: all grains of a single run, a file x.0000.vtk, x.0001.vtk ... a snapshot; without an ending: a "

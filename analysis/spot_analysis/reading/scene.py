@@ -81,6 +81,7 @@ def _is_finite(value):
 
 KEYS = tuple(f.name for f in fields(Scene))
 NUMBERS = tuple(f.name for f in fields(Scene) if f.type is float and f.default is MISSING)
+WALLS = ("half_width_x", "half_depth_y", "orifice_radius")
 ORIGIN = tuple(f.name for f in fields(Scene) if f.type is float and f.default is not MISSING)  # of time and space
 
 
@@ -103,18 +104,20 @@ def load_scene(source, scene_file=None, overrides=None):
 
 
 def scene_beside(source):
-    """The scene of ``source`` and whether it is periodic along y, where half_depth_y is half of the period.
+    """The scene of ``source``, and which walls it tells: "box", "periodic" along y (half_depth_y is half of the period), or None.
 
-    (None, False) where there is no ``scene.json``; raises SceneError where it is bad.
+    (None, None) where there is no ``scene.json``. One without any of WALLS has units only. Raises SceneError where it is bad.
     """
     path = _path_beside(source)
     if not os.path.exists(path):
-        return None, False
+        return None, None
     values = _read(path)
-    periodic = "half_period_y" in values
-    if periodic:
+    walls = "periodic" if "half_period_y" in values else "box" if any(key in values for key in WALLS) else None
+    if walls == "periodic":
         values["half_depth_y"] = values.pop("half_period_y")
-    return _complete(values, source, path), periodic
+    if walls is None:
+        values.update(dict.fromkeys(WALLS, 1.0))  # a Scene wants them; the caller knows that there are none
+    return _complete(values, source, path), walls
 
 
 def _path_beside(source):

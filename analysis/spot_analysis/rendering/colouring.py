@@ -50,14 +50,14 @@ class Speed:
 class PackingFraction:
     """Volume of the grain over that of its Voronoi cell, which the walls of scene.json cut off.
 
-    Unknown at the free surface, and where there is no scene.json, or the silo is periodic, at walls as well.
+    Unknown at the free surface, and, where no scene.json tells the walls or the silo is periodic, at walls as well.
     """
 
     LABEL = "local packing fraction"
 
     def __init__(self, run, height):
         self._path = run.path
-        self._container = None if run.is_periodic_y else run.container
+        self._container = run.container if run.has_front else None
 
     def see(self, grains):
         sizes = grains.diameters

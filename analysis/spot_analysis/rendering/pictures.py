@@ -72,7 +72,7 @@ def take_pictures(run, colour, colouring, slab, wanted, progress):
 
 
 def _default_slab(run, grains):
-    if run.container and not run.is_periodic_y:
+    if run.has_front:
         return -np.inf, FRONT - run.container.half_depth
     middle = (grains.positions[:, 1].min() + grains.positions[:, 1].max()) / 2
     return middle - MIDDLE, middle + MIDDLE

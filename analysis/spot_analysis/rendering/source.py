@@ -45,14 +45,19 @@ class Run:
     def __init__(self, label, path, diameter=None, warn=warnings.warn):
         self.label = label
         self.path = path
-        self.scene, self.is_periodic_y = scene_beside(path)
+        self.scene, self._walls = scene_beside(path)
         self._diameter = self.scene.diameter if self.scene else diameter
         self._warn = warn
 
     @property
     def container(self):
         """Walls in units of d, None where no scene.json tells them."""
-        return self.scene.container() if self.scene else None
+        return self.scene.container() if self._walls else None
+
+    @property
+    def has_front(self):
+        """Whether there are walls at the front and at the back."""
+        return self._walls == "box"
 
     def snapshots(self):
         """Grains of each snapshot in the order of time; raises DumpError."""
