@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Makes all pictures of the documents, in docs/pictures. Takes the dumps of ./run.sh, which runs first where there are none.
 #
-#   scripts/pictures.sh
+#   scripts/pictures.sh    # a minute after ./run.sh
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 
@@ -14,3 +14,10 @@ mkdir -p docs/pictures
 
 render DEM=$dem/dem-statistics.npz spot=$dumps --times 30 60 90 --height 480 -o docs/pictures/silo.png
 render DEM=$dem/front.npz spot=$dumps --to 90 --height 480 --fps 6 --quality 50 -o docs/pictures/silo.webp
+
+hopper=results/own-hopper
+rm -rf "$hopper"
+mkdir -p "$hopper"
+(cd examples/own-hopper && ../../build/bin/lmp -in in.own -log "../../$hopper/log.lammps" -screen none && mv drain.*.dump "../../$hopper")
+cp examples/own-hopper/scene.json "$hopper"
+render DEM=examples/own-hopper/dem.npz spot=$hopper --times 20 40 60 --height 420 -o docs/pictures/hopper.png

@@ -40,7 +40,7 @@ def open_reel(word, options, progress):
 
 
 def title(reel, picture):
-    time = rf"$t = {picture.time:.4g}\,\tau$" if reel.tau else f"step {picture.time:g}"
+    time = rf"$t = {round(picture.time, 1):g}\,\tau$" if reel.tau else f"step {picture.time:g}"
     return f"{reel.label}, {time}" if reel.label else time
 
 
