@@ -71,9 +71,17 @@ def _unit(vectors):
 
 
 def with_mirror_images(points, container, reach=MIRRORED):
-    """The points (n, 3), followed by their images in walls and base closer than ``reach``, images of images too."""
-    for axis, wall in ((0, container.half_width), (0, -container.half_width),
-                       (1, container.half_depth), (1, -container.half_depth), (2, 0.0)):
+    """The points (n, 3), followed by their images in walls and base closer than ``reach``, images of images too.
+
+    Where the silo repeats, the points have to be in one period, and have images in the next ones.
+    """
+    walls = [(0, container.half_width), (0, -container.half_width), (2, 0.0)]
+    if container.periodic:
+        next_ones = [points[side * points[:, 1] > container.half_depth - reach] - [0, side * container.period, 0] for side in (-1, 1)]
+        points = np.vstack([points, *next_ones])
+    else:
+        walls[2:2] = [(1, container.half_depth), (1, -container.half_depth)]
+    for axis, wall in walls:
         near = np.abs(points[:, axis] - wall) < reach
         if axis == 2:
             near &= (points[:, 2] > 0) & (np.hypot(points[:, 0], points[:, 1]) > container.orifice_radius)
@@ -87,7 +95,7 @@ def cells_in_container(positions, container):
     """Volume of the cell of each grain (n,), d^3, cut off by walls and base; infinite at the free surface."""
     if len(positions) < 5:
         return np.full(len(positions), np.inf)
-    points = with_mirror_images(positions, container)
+    points = with_mirror_images(container.in_period(positions), container)
     # a far frame closes all cells, so that those of the hull come out large instead of meaningless
     low, high = points.min(axis=0) - 20, points.max(axis=0) + 20
     frame = np.array(list(itertools.product(*zip(low, (low + high) / 2, high))))
