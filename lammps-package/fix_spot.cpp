@@ -254,6 +254,7 @@ void FixSpot::read_period() {
   if (model->drainage && periodic != model->command.periodic)
     throw spot::InvalidContainer("the simulation box repeats otherwise than in the last run: give the fix another ID");
   model->command.periodic = periodic;
+  model->command.outlets.repeat(periodic);
 }
 
 /// A window that the command leaves open follows from the timestep of the first run that has steps.
@@ -349,6 +350,7 @@ void FixSpot::init() {
   // Without a pair style nobody else asks for a communication cutoff, and LAMMPS would warn that it is zero.
   comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
   try {
+    read_period();
     model->command.resolve(model->diameter);
     tell_predicted_outflow();
     if (*model->command.time_ordered && comm->nprocs > 1)
@@ -356,7 +358,6 @@ void FixSpot::init() {
                                            ": use 'accuracy normal', or 'relax tol' with a tolerance"));
     if (model->saved) go_on_with_saved_window();
     choose_window();
-    read_period();
     check_box();
     make_container();
     if (model->saved) require_same_settings(*model->saved, model->command.settings());

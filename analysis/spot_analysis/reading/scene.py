@@ -2,7 +2,6 @@
 """What a dump does not say: units and geometry of the run, read from the ``scene.json`` beside the dumps."""
 
 import glob
-import json
 import math
 import os
 from dataclasses import MISSING, asdict, dataclass, fields
@@ -11,6 +10,7 @@ import numpy as np
 
 from ..base.errors import SceneError
 from .container import Container
+from .json_object import read_object
 
 FILE_NAME = "scene.json"
 PERIOD_KEY = "half_period_y"
@@ -108,7 +108,7 @@ def load_scene(source, scene_file=None, overrides=None):
     if not glob.has_magic(source) and not os.path.exists(source):
         raise SceneError(f"{source}: no such file or folder")
     path = scene_file or os.path.join(source if os.path.isdir(source) else os.path.dirname(source), FILE_NAME)
-    values = _read_json(path) if scene_file or os.path.exists(path) else {}
+    values = read_object(path, f"the keys {', '.join(NUMBERS)}") if scene_file or os.path.exists(path) else {}
     values.update({key: value for key, value in (overrides or {}).items() if value is not None})
     for key in NUMBERS:
         if key not in values and not (key == "half_depth_y" and PERIOD_KEY in values):
@@ -132,25 +132,3 @@ def scene_of(values):
         raise SceneError(f"scene: both 'half_depth_y' and '{PERIOD_KEY}' are given, but there are walls across y or a period")
     values = dict(values)
     return Scene(half_depth_y=values.pop(PERIOD_KEY), periodic_y=True, **values)
-
-
-def _read_json(path):
-    try:
-        with open(path, encoding="utf-8") as handle:
-            values = json.load(handle, object_pairs_hook=_without_repeats)
-    except OSError as error:
-        raise SceneError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise SceneError(f"{path}: not valid JSON ({error})") from error
-    if not isinstance(values, dict):
-        raise SceneError(f"{path}: wants an object with the keys {', '.join(NUMBERS)}")
-    return values
-
-
-def _without_repeats(pairs):
-    """A JSON object; raises ValueError for a key that stands there twice, of which JSON keeps the last."""
-    values = dict(pairs)
-    if len(values) < len(pairs):
-        names = [name for name, _ in pairs]
-        raise ValueError("key '" + next(name for name in names if names.count(name) > 1) + "' stands there twice")
-    return values

@@ -48,9 +48,9 @@ std::unique_ptr<WalledContainer> box_silo(double x_low, double x_high, double y_
 }
 
 std::unique_ptr<WalledContainer> box_silo(const std::optional<Interval>& x, const std::optional<Interval>& y,
-                                          const Periodic& periodic, const Outlets& outlets,
-                                          const SpotBuffers& buffers) {
+                                          const Periodic& periodic, const Outlets& given, const SpotBuffers& buffers) {
   const std::optional<Interval> walls[] = {x, y};
+  const Outlets outlets = given.repeated(periodic);
   for (int axis = 0; axis < 2; ++axis) {
     const char* name = axis == 0 ? "x" : "y";
     if (walls[axis]) {
