@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Silos that repeat along x, y or both: what LAMMPS is told of grains that leave on one side and come in on the other."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -208,3 +210,30 @@ def test_an_outlet_that_reaches_out_of_the_cell(tmp_path):
     write_data(tmp_path / "packing.data", lattice("y"), box=BOX)
     fix = fix_of("y").replace(OPENING, "orifice 0 4 0 3.0")
     assert "reaches out of the cell that repeats, along y from -6 to 6" in error_of(deck(fix=fix, run="run 1", boundary="f p f"), tmp_path)
+
+
+def test_a_slot_from_side_to_side(tmp_path):
+    """It has no rim where the cells meet: as much leaves there as elsewhere, and nothing stays."""
+    points = lattice("y")
+    fix = fix_of("y", "volume 77").replace(OPENING, "slot 0 0 0 6 12").replace("injection 100", "injection 300")
+    write_data(tmp_path / "packing.data", points, box=BOX)
+    run_ok(deck(fix=fix, run="run 60", boundary="f p f", after=DUMP), tmp_path)
+    start, *_, end = fates(tmp_path)
+    gone = ~np.isin(start["id"], end["id"])
+    near = gone & (abs(start["x"]) < 3)
+    middle, seam = ((near & inside).sum() for inside in (abs(start["y"]) < 3, abs(start["y"]) >= 3))
+    assert middle + seam > 200
+    assert abs(middle - seam) < 4 * np.sqrt(middle + seam)
+    # a rim would hold grains at its height, over what is open
+    over = (abs(end["x"]) < 2) & (end["z"] < 1)
+    fall = end["f_drain[3]"][over]
+    assert over.sum() > 5 and fall.max() < -0.5
+
+
+def test_beverloo_for_a_slot_from_side_to_side(tmp_path):
+    """A length of which nothing is taken off."""
+    fix = fix_of("y", "volume 77").replace(OPENING, "slot 0 0 0 7 12").replace("injection 100", "beverloo 1.0")
+    write_data(tmp_path / "packing.data", lattice("y"), box=BOX)
+    said = run_ok(deck(fix=fix, run="run 1", boundary="f p f"), tmp_path)
+    outflow = float(re.search(r"outflow of ([\d.]+) grains per time through the slot of 7 by 12 without ends along y", said)[1])
+    assert outflow == pytest.approx(1.03 * 0.58 * 6 / np.pi * 12 * (7 - 1.4)**1.5, rel=1e-4)
