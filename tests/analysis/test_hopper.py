@@ -74,9 +74,10 @@ def test_the_command_compares_and_keeps_statistics(tmp_path):
     run, kept = write_run(tmp_path / "run"), tmp_path / "kept.json"
     said = script("hopper.py", run, "--from", 4, "--to", 24, "-o", kept)
     assert said.returncode == 0 and "quantities" in said.stdout, said.stderr
-    said = script("hopper.py", kept, run, run, "--from", 4, "--to", 24)
+    said = script("hopper.py", kept, run, run, "--from", 4, "--to", 24, "--plot", tmp_path / "profiles.png")
     assert said.returncode == 0, said.stderr
-    rows = [line.split("|")[1:-1] for line in said.stdout.splitlines()[2:]]
+    assert (tmp_path / "profiles.png").read_bytes().startswith(b"\x89PNG")
+    rows = [line.split("|")[1:-1] for line in said.stdout.splitlines()[2:] if line.startswith("|")]
     assert len(rows) == len(json.loads(kept.read_text())["quantities"])
     assert all(row[3].strip() in ("+0.0 %", "-0.0 %", "") for row in rows)
     said = script("hopper.py", kept, run, "--from", 4, "--to", 20)

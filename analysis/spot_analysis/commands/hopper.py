@@ -9,6 +9,7 @@ import os
 from ..base.errors import AnalysisError
 from ..reading.axial_scene import load_axial_scene
 from ..reading.dump import read_frames
+from ..report import plots_axial
 from ..statistics import axial_flow
 from . import command_line
 
@@ -55,12 +56,15 @@ def compare():
                         help="folder of dumps with scene.json, or a file of --output; the first is what the others are compared with")
     parser.add_argument("--from", dest="start", type=float, default=10.0, metavar="TAU", help="default: %(default)g")
     parser.add_argument("--to", dest="end", type=float, default=50.0, metavar="TAU", help="default: %(default)g")
+    parser.add_argument("--plot", metavar="FILE.png", help="draws the profiles of the fall")
     parser.add_argument("-o", "--output", metavar="FILE.json", help="keeps the statistics of the first run")
     options = parser.parse_args()
     if not 0 <= options.start < options.end:
         parser.error("--from must not be negative, and below --to")
     if options.output and not options.output.endswith(".json"):
         parser.error(f"--output '{options.output}' must end in .json")
+    if options.plot and len(options.runs) == 1:
+        parser.error("--plot compares, so it needs two runs or more")
     runs = [_statistics(run, options.start, options.end) for run in options.runs]
     if options.output:
         with open(options.output, "w", encoding="utf-8") as handle:
@@ -71,6 +75,9 @@ def compare():
         print(f"| {options.start:g} to {options.end:g} tau | {options.runs[0]} | {len(runs) - 1} of spot | difference |\n|---|---|---|---|")
         for name, value in runs[0].items():
             print(_row(name, value, spot.get(name, [math.nan, math.nan])))
+        if options.plot:
+            plots_axial.save_profiles(options.plot, runs[0], spot)
+            print(f"{options.plot}: profiles of the fall")
 
 
 def main():
