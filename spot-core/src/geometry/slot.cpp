@@ -10,8 +10,8 @@
 namespace spot {
 
 Slot::Slot(double x_width, double y_width) : half_(0.5 * x_width, 0.5 * y_width, 0.0) {
-  require_positive(x_width, "the width of the slot along x");
-  require_positive(y_width, "the width of the slot along y");
+  require_positive(2.0 * half_.x(), "the width of the slot along x");
+  require_positive(2.0 * half_.y(), "the width of the slot along y");
 }
 
 std::string Slot::name() const {
