@@ -2,7 +2,6 @@
 """What a dump does not say: units and geometry of the run, read from the ``scene.json`` beside the dumps."""
 
 import glob
-import json
 import math
 import os
 from dataclasses import MISSING, asdict, dataclass, fields
@@ -11,6 +10,7 @@ import numpy as np
 
 from ..base.errors import SceneError
 from .container import Container
+from .json_object import read_object
 
 FILE_NAME = "scene.json"
 
@@ -81,6 +81,7 @@ def _is_finite(value):
 
 KEYS = tuple(f.name for f in fields(Scene))
 NUMBERS = tuple(f.name for f in fields(Scene) if f.type is float and f.default is MISSING)
+WALLS = ("half_width_x", "half_depth_y", "orifice_radius")
 ORIGIN = tuple(f.name for f in fields(Scene) if f.type is float and f.default is not MISSING)  # of time and space
 
 
@@ -94,11 +95,41 @@ def load_scene(source, scene_file=None, overrides=None):
     """
     if not glob.has_magic(source) and not os.path.exists(source):
         raise SceneError(f"{source}: no such file or folder")
-    path = scene_file or os.path.join(source if os.path.isdir(source) else os.path.dirname(source), FILE_NAME)
-    values = _read_json(path) if scene_file or os.path.exists(path) else {}
+    path = scene_file or _path_beside(source)
+    values = _read(path) if scene_file or os.path.exists(path) else {}
     values.update({key: value for key, value in (overrides or {}).items() if value is not None})
     if "half_period_y" in values:
         raise SceneError(f"{path}: the silo is periodic along y, but the statistics need walls at y = +-half_depth_y")
+    return _complete(values, source, path)
+
+
+def scene_beside(source):
+    """The scene of ``source``, and which walls it tells: "box", "periodic" along y (half_depth_y is half of the period), or None.
+
+    (None, None) where there is no ``scene.json``. One without any of WALLS has units only. Raises SceneError where it is bad.
+    """
+    path = _path_beside(source)
+    if not os.path.exists(path):
+        return None, None
+    values = _read(path)
+    walls = "periodic" if "half_period_y" in values else "box" if any(key in values for key in WALLS) else None
+    if walls == "periodic":
+        values["half_depth_y"] = values.pop("half_period_y")
+    if walls is None:
+        values.update(dict.fromkeys(WALLS, 1.0))  # a Scene wants them; the caller knows that there are none
+    return _complete(values, source, path), walls
+
+
+def _path_beside(source):
+    return os.path.join(source if os.path.isdir(source) else os.path.dirname(source), FILE_NAME)
+
+
+def _read(path):
+    return read_object(path, f"the keys {', '.join(NUMBERS)}")
+
+
+def _complete(values, source, path):
+    """The Scene of what ``path`` and the command line gave; raises SceneError for a key that is missing or bad."""
     for key in NUMBERS:
         if key not in values:
             where = f"in {path}" if os.path.exists(path) else f"(no {path})"
@@ -116,25 +147,3 @@ def scene_of(values):
     if unknown:
         raise SceneError(f"unknown scene key {unknown}; allowed are {', '.join(KEYS)}")
     return Scene(**values)
-
-
-def _read_json(path):
-    try:
-        with open(path, encoding="utf-8") as handle:
-            values = json.load(handle, object_pairs_hook=_without_repeats)
-    except OSError as error:
-        raise SceneError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise SceneError(f"{path}: not valid JSON ({error})") from error
-    if not isinstance(values, dict):
-        raise SceneError(f"{path}: wants an object with the keys {', '.join(NUMBERS)}")
-    return values
-
-
-def _without_repeats(pairs):
-    """A JSON object; raises ValueError for a key that stands there twice, of which JSON keeps the last."""
-    values = dict(pairs)
-    if len(values) < len(pairs):
-        names = [name for name, _ in pairs]
-        raise ValueError("key '" + next(name for name in names if names.count(name) > 1) + "' stands there twice")
-    return values
