@@ -148,8 +148,9 @@ void BlockMoves::find_rows(Part& part, const std::vector<Move>& moves, double ra
   }
 }
 
-void BlockMoves::add_reached(Part& part, const CellRow& row) const {
+void BlockMoves::add_reached(Part& part, const CellRow& row) {
   const CellLattice& lattice = cells_.lattice();
+  cells_reached_[cells_.layer_of(row.first)] += row.last - row.first;
   CellRow& reached = part.reached[(row.first - lattice.first_cell_of(part.first_layer)) / lattice.cells_in_row()];
   reached = {std::min(reached.first, row.first), std::max(reached.last, row.last)};
 }

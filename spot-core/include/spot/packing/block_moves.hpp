@@ -88,7 +88,7 @@ class BlockMoves {
   template <typename Visit>
   void visit_images(Part& part, std::size_t move, const Visit& visit);
   void find_rows(Part& part, const std::vector<Move>& moves, double radius);
-  void add_reached(Part& part, const CellRow& row) const;
+  void add_reached(Part& part, const CellRow& row);
   void take_places(const Part& part);
   void count_enclosed(Part& part);
   void update_tilts(const Part& part, const NonaffineMotion& motion);
