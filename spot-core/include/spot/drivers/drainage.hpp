@@ -118,8 +118,8 @@ class Drainage {
     counters_.volume_moved += enclosed;
   }
   /// The weight of a move that encloses this grain volume (1024 = grain_volume): by its fixed volume, if it has one,
-  /// and by what its spot carries, which changes. For each move once, in the order of a spot's moves.
-  double weigh(const Move& move, int enclosed, Spots& spots);
+  /// and by what its spot carries.
+  double weigh(const Move& move, int enclosed, const Spots::Carried& carried);
   void count_sweep(std::size_t grains) {
     ++counters_.sweeps;
     counters_.grains_swept += static_cast<std::int64_t>(grains);

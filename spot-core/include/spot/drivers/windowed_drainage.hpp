@@ -74,6 +74,7 @@ class WindowedDrainage : public Drainage {
   void step_to(double until);
   void displace();
   void weigh(const std::vector<int>& enclosed, std::vector<Move>& moves);
+  void carry();
   void remove_spots_above();
   void let_settle(bool everybody);
   void relax();
@@ -93,6 +94,7 @@ class WindowedDrainage : public Drainage {
   // Of the window at hand.
   SharedMoves moves_;
   std::vector<Move> displacing_;  // in the same order
+  std::vector<Spots::Carried> carried_;
 };
 
 }  // namespace spot
