@@ -110,7 +110,8 @@ void Drainage::add_drained(const std::vector<Grain>& grains) {
 }
 
 void Drainage::require_inside() const {
-  visit_grains([&](const Grain& grain) { checks_.require_inside(grain); });
+  const auto require = [&](const Grain& grain) { checks_.require_inside(grain); };
+  container().concurrent() ? visit_grains_at_once(require) : visit_grains(require);
 }
 
 void Drainage::replace_container(std::shared_ptr<const Container> container) {

@@ -218,12 +218,17 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
 
 // ---- the rest
 
-void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit) const {
-  for (std::uint32_t cell = cells_.first_own(); cell < cells_.last_own(); ++cell) {
-    if (cells_.is_image(cell)) continue;
-    const Cell listed_in = cells_.lattice().cell(cell);
-    cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.grain(slot, listed_in)); });
-  }
+void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit, Workers* workers) const {
+  const auto visit_cells = [&](int, std::size_t first, std::size_t last) {
+    for (std::uint32_t k = static_cast<std::uint32_t>(first); k < last; ++k) {
+      const std::uint32_t cell = cells_.first_own() + k;
+      if (cells_.is_image(cell)) continue;
+      const Cell listed_in = cells_.lattice().cell(cell);
+      cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.grain(slot, listed_in)); });
+    }
+  };
+  const std::size_t owned = cells_.last_own() - cells_.first_own();
+  workers ? workers->share_out(owned, visit_cells) : visit_cells(0, 0, owned);
 }
 
 void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {
