@@ -32,6 +32,7 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <mutex>
 #include <unordered_map>
 
 using namespace LAMMPS_NS;
@@ -88,6 +89,10 @@ void count_hash(std::vector<std::int64_t> &sums, std::uint64_t hash, int sign) {
   sums[0] += sign;
   sums[1] += sign * static_cast<std::int64_t>(hash & 0xffffffffu);
   sums[2] += sign * static_cast<std::int64_t>(hash >> 32);
+}
+
+std::string lost(std::int64_t grain) {
+  return message("grain ", grain, " was lost by LAMMPS: make the simulation box larger");
 }
 
 enum BoundaryKind { PERIODIC = 0, FIXED = 1 };  // as in domain.h
@@ -531,8 +536,14 @@ void FixSpot::setup(int) {
 std::vector<std::int64_t> FixSpot::hash_of_lammps() const {
   const spot::Quantum &quantum = model->drainage->quantum();
   std::vector<std::int64_t> sums = {0, 0, 0};
-  for (int i = 0; i < atom->nlocal; ++i)
-    count_hash(sums, hash_of(grain_of_lammps(i), atom->radius[i], quantum, model->cell), 1);
+  std::mutex adding;
+  model->drainage->share_out(atom->nlocal, [&](std::size_t first, std::size_t last) {
+    std::vector<std::int64_t> own = {0, 0, 0};
+    for (int i = static_cast<int>(first); i < static_cast<int>(last); ++i)
+      count_hash(own, hash_of(grain_of_lammps(i), atom->radius[i], quantum, model->cell), 1);
+    const std::lock_guard<std::mutex> lock(adding);
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += own[k];
+  });
   return sums;
 }
 
@@ -571,8 +582,7 @@ void FixSpot::take_changes() {
 /// Index of a grain in LAMMPS' arrays, which no longer hold it if it was outside the simulation box.
 int FixSpot::local_index(std::int64_t grain) const {
   const int index = model->local[static_cast<tagint>(grain)];
-  if (index < 0)
-    error->one(FLERR, message("fix spot: grain ", grain, " was lost by LAMMPS: make the simulation box larger"));
+  if (index < 0) error->one(FLERR, message("fix spot: ", lost(grain)));
   return index;
 }
 
@@ -599,7 +609,8 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
   const double per_time = 1.0 / update->dt;
   const spot::Quantum &quantum = model->drainage->quantum();
   const auto put = [&](std::int64_t grain, const double *position) {
-    const int i = local_index(grain);
+    const int i = model->local[static_cast<tagint>(grain)];
+    if (i < 0) throw spot::InvalidPacking(lost(grain));  // LAMMPS' errors are for its own thread
     for (int axis = 0; axis < 3; ++axis) {
       const double before = quantum.snap(atom->x[i][axis]);
       const double by = model->cell.nearest(position[axis] - before, axis);
@@ -612,7 +623,7 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
     }
   };
   if (comm->nprocs == 1) {
-    model->drainage->visit_grains([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); });
+    model->drainage->visit_grains_at_once([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); });
     for (const spot::Grain &grain : drained) model->leaving.push_back(static_cast<tagint>(grain.id));
     return;
   }
@@ -694,9 +705,11 @@ void FixSpot::pre_exchange() {
 
 void FixSpot::end_of_step() {
   // fix balance has rounded positions when it looked at them in units of the box, and new grains come with any.
-  for (int i = 0; i < atom->nlocal; ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      atom->x[i][axis] = in_box(model->drainage->quantum().snap(atom->x[i][axis]), axis);
+  model->drainage->share_out(atom->nlocal, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        atom->x[i][axis] = in_box(model->drainage->quantum().snap(atom->x[i][axis]), axis);
+  });
   list_spots();
 }
 

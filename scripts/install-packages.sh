@@ -8,7 +8,7 @@ packages=(
   lammps liblammps-dev libfmt-dev mpi-default-dev mpi-default-bin liggghts
   libeigen3-dev librandom123-dev
   libgtest-dev libgmock-dev libbenchmark-dev
-  python3 python3-numpy python3-scipy python3-matplotlib python3-zstandard python3-pytest
+  python3 python3-numpy python3-scipy python3-matplotlib python3-pil python3-zstandard python3-pytest
   python3-venv python3-setuptools python3-wheel
 )
 

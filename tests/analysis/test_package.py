@@ -70,5 +70,7 @@ def test_commands(installed, tmp_path):
     assert "2 snapshots" in run(installed / "spot-measure", tmp_path, "-o", tmp_path / "a.npz")
     assert "grains_initial" in run(installed / "spot-compare", tmp_path / "a.npz", tmp_path, "-o", tmp_path / "out")
     assert (tmp_path / "out" / "report.html").exists()
+    assert run(installed / "spot-render", tmp_path, "-o", tmp_path / "a.png", "--slice", "-1", "1") == ""
+    assert (tmp_path / "a.png").exists()
     refused = subprocess.run([installed / "spot-calibrate", tmp_path / "a.npz"], capture_output=True, text=True)
     assert refused.returncode == 1 and refused.stderr.startswith("error: too few snapshots")

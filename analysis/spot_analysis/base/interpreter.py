@@ -5,7 +5,7 @@ import importlib.util
 import sys
 
 PACKAGES = {"numpy": "python3-numpy", "scipy": "python3-scipy", "matplotlib": "python3-matplotlib",
-            "zstandard": "python3-zstandard"}
+            "zstandard": "python3-zstandard", "PIL": "python3-pil"}
 
 
 def require_packages(*modules):

@@ -93,12 +93,21 @@ def with_mirror_images(points, container, reach=MIRRORED):
 
 def cells_in_container(positions, container):
     """Volume of the cell of each grain (n,), d^3, cut off by walls and base; infinite at the free surface."""
-    if len(positions) < 5:
-        return np.full(len(positions), np.inf)
-    points = with_mirror_images(container.in_period(positions), container)
+    return _first_cells(with_mirror_images(container.in_period(positions), container), len(positions))
+
+
+def cells_without_walls(positions):
+    """Volume of the cell of each grain (n,), d^3; infinite at walls and at the free surface."""
+    return _first_cells(positions, len(positions))
+
+
+def _first_cells(points, count):
+    """Volumes of the cells of the first ``count`` points, infinite where they are open."""
+    if count < 5:
+        return np.full(count, np.inf)
     # a far frame closes all cells, so that those of the hull come out large instead of meaningless
     low, high = points.min(axis=0) - 20, points.max(axis=0) + 20
     frame = np.array(list(itertools.product(*zip(low, (low + high) / 2, high))))
     centre = np.all(frame == (low + high) / 2, axis=1)
-    volumes = cell_volumes(np.vstack([points, frame[~centre]]))[:len(positions)]
+    volumes = cell_volumes(np.vstack([points, frame[~centre]]))[:count]
     return np.where((volumes > 0) & (volumes < OPEN), volumes, np.inf)

@@ -30,7 +30,7 @@ class Container {
     this->contacts(centre, reach, contacts);
   }
 
-  /// May several threads ask for contacts at the same time?
+  /// May several threads ask at the same time, whatever they ask?
   virtual bool concurrent() const { return true; }
 
   virtual const Outlets& outlets() const = 0;

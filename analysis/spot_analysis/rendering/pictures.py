@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is drawn of each snapshot: a slab of grains seen along y, and the file that keeps such pictures."""
+
+import json
+import zipfile
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..base.errors import AnalysisError
+from ..reading.container import Container
+from ..statistics import run_statistics
+from ..statistics.snapshot import TIME_TOLERANCE
+
+FORMAT = "spot-analysis pictures 1"
+QUANTUM = run_statistics.PICTURE_QUANTUM  # d
+FRONT = 1.0  # d; depth of the layer at the front wall
+MIDDLE = 1.0  # d to either side of the middle where no walls are known
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One snapshot, n grains, the far ones first; lengths in d, time in tau or steps.
+
+    x, z, diameters : (n,); values : (n,), what they are coloured by, not a number where unknown
+    spots : (m, 2) x and z of live spots in the slab
+    """
+
+    time: float
+    x: np.ndarray
+    z: np.ndarray
+    diameters: np.ndarray
+    values: np.ndarray
+    spots: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+
+
+@dataclass(frozen=True)
+class Reel:
+    """The pictures of one run. colour : a key of COLOURINGS; container : walls, None where unknown; tau : whether times are in tau"""
+
+    label: str
+    colour: str
+    colour_label: str
+    container: object
+    tau: bool
+    pictures: list
+
+
+def take_pictures(run, colour, colouring, slab, wanted, progress):
+    """The Reel of the dumps of ``run``.
+
+    slab : (low, high) in y; None takes the layer at the front wall, or the middle where no walls are known
+    wanted : tells of a time whether it is drawn
+    """
+    pictures = []
+    for grains in run.snapshots():
+        colouring.see(grains)
+        if slab is None and len(grains.ids):
+            slab = _default_slab(run, grains)
+        if not wanted(grains.time):
+            continue
+        chosen = np.zeros(0, dtype=bool) if slab is None else \
+            (grains.positions[:, 1] >= slab[0]) & (grains.positions[:, 1] < slab[1])
+        values = colouring.values(grains, chosen)
+        x, y, z = grains.positions[chosen].T
+        far_first = np.argsort(-y, kind="stable")
+        spots = grains.spots if slab is None else grains.spots[(grains.spots[:, 1] >= slab[0]) & (grains.spots[:, 1] < slab[1])]
+        pictures.append(Picture(grains.time, x[far_first], z[far_first], grains.diameters[chosen][far_first], values[far_first],
+                                spots[:, [0, 2]]))
+        progress(f"{run.label}: {len(pictures)} snapshots read")
+    return Reel(run.label, colour, colouring.LABEL, run.container, run.scene is not None, pictures)
+
+
+def _default_slab(run, grains):
+    if run.has_front:
+        return -np.inf, FRONT - run.container.half_depth
+    middle = (grains.positions[:, 1].min() + grains.positions[:, 1].max()) / 2
+    return middle - MIDDLE, middle + MIDDLE
+
+
+def save_pictures(path, reel):
+    """Write a Reel; positions and diameters to QUANTUM."""
+    header = {"format": FORMAT, "colour": reel.colour, "colour_label": reel.colour_label, "tau": reel.tau,
+              "container": vars(reel.container) if reel.container else None}
+    # neighbours in the file look alike when sorted by height, so it compresses better; a layer hides nothing
+    orders = [np.argsort(picture.z, kind="stable") for picture in reel.pictures]
+    columns = {name: np.concatenate([getattr(picture, name)[order] for picture, order in zip(reel.pictures, orders)])
+               for name in ("x", "z", "diameters", "values")}
+    lengths = {name: np.rint(columns[name] / QUANTUM).astype(np.int32) for name in ("x", "z", "diameters")}
+    with open(path, "wb") as handle:
+        np.savez_compressed(handle, header=json.dumps(header), times=[picture.time for picture in reel.pictures],
+                            sizes=[len(picture.x) for picture in reel.pictures],
+                            values=columns["values"].astype(np.float16), **lengths)
+
+
+def load_pictures(label, path, wanted):
+    """The Reel in ``path``: kept pictures, or those of the front layer in a statistics file."""
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            header = json.loads(str(stored["header"]))
+            if header["format"] != FORMAT:
+                return _of_statistics(label, path, wanted)
+            container = header["container"] and Container(**header["container"])
+            ends = np.cumsum(stored["sizes"])
+            columns = [np.split(stored[name], ends[:-1]) for name in ("x", "z", "diameters", "values")]
+            times = stored["times"]
+    except OSError as error:
+        raise AnalysisError(f"{path}: {error.strerror or error}") from error
+    except (EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
+        raise AnalysisError(f"{path}: neither pictures kept by render.py nor statistics of measure.py ({error})") from error
+    pictures = [Picture(float(time), x * QUANTUM, z * QUANTUM, diameters * QUANTUM, values.astype(float))
+                for time, x, z, diameters, values in zip(times, *columns) if wanted(time)]
+    return Reel(label, header["colour"], header["colour_label"], container, header["tau"], pictures)
+
+
+def _of_statistics(label, path, wanted):
+    run = run_statistics.load(path)
+    pictures = []
+    for index, time in enumerate(run.picture_times):
+        x, z, layer = run.picture(index)
+        if wanted(time):
+            pictures.append(Picture(float(time), x, z, np.ones(len(x)), np.where(layer < 0, np.nan, layer)))
+    return Reel(label, "layer", None, run.scene.container(), True, pictures)
+
+
+def at_common_times(reels):
+    """[(pictures of all reels at one time), ...]; raises AnalysisError where there is none."""
+    if len({reel.tau for reel in reels}) > 1:
+        without = next(reel.label for reel in reels if not reel.tau)
+        raise AnalysisError(f"{without}: no scene.json, so its times can't be matched with those of the other run")
+    tolerance = TIME_TOLERANCE if reels[0].tau else 0
+    rows = []
+    for first in reels[0].pictures:
+        row = [next((picture for picture in reel.pictures if abs(picture.time - first.time) <= tolerance), None) for reel in reels]
+        if None not in row:
+            rows.append(row)
+    if not rows:
+        raise AnalysisError(f"{' and '.join(reel.label for reel in reels)}: no snapshot at a time that was asked for" +
+                            (" and that all of them have" if len(reels) > 1 else ""))
+    return rows
