@@ -41,6 +41,9 @@ class Container {
   /// Is this place over or under an outlet, or no farther than `margin` beside it?
   bool is_over_outlet(const Vector3& place, double margin = 0.0) const;
 
+  /// The outlet, or the image of one, nearest to a place.
+  const Outlet& nearest_outlet(const Vector3& place) const;
+
   /// May a grain that is here now, below the outlets, have come out of one? Else it went through a wall.
   virtual bool may_have_left_to(const Vector3&) const { return true; }
 
