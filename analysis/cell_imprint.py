@@ -12,7 +12,7 @@ require_packages("numpy", "scipy", "zstandard")
 from spot_analysis.base.progress import Progress  # noqa: E402  (only after the check above)
 from spot_analysis.commands import command_line  # noqa: E402
 from spot_analysis.reading.dump import read_frames  # noqa: E402
-from spot_analysis.reading.scene_file import load_scene  # noqa: E402
+from spot_analysis.reading.scene import load_scene  # noqa: E402
 from spot_analysis.statistics import cell_imprint, fold  # noqa: E402
 from spot_analysis.statistics.history import History  # noqa: E402
 from spot_analysis.statistics.interval import STEADY_FROM  # noqa: E402

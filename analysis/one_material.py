@@ -17,7 +17,7 @@ import baseline  # noqa: E402  (only after the check above)
 from spot_analysis.base.errors import AnalysisError  # noqa: E402
 from spot_analysis.commands import command_line, deck_run  # noqa: E402
 from spot_analysis.reading.dump import read_frames  # noqa: E402
-from spot_analysis.reading.scene_file import load_scene  # noqa: E402
+from spot_analysis.reading.scene import load_scene  # noqa: E402
 from spot_analysis.report import criteria, families, family_table  # noqa: E402
 from spot_analysis.report.by_name import by_name  # noqa: E402
 from spot_analysis.statistics import run_statistics  # noqa: E402

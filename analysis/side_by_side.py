@@ -10,7 +10,7 @@ require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 from spot_analysis.base.errors import AnalysisError  # noqa: E402  (only after the check above)
 from spot_analysis.commands import command_line  # noqa: E402
-from spot_analysis.reading.scene_file import load_scene  # noqa: E402
+from spot_analysis.reading.scene import load_scene  # noqa: E402
 from spot_analysis.report import criteria, families, family_table  # noqa: E402
 from spot_analysis.statistics import run_statistics  # noqa: E402
 from spot_analysis.statistics.interval import STEADY_FROM  # noqa: E402

@@ -16,7 +16,7 @@ from spot_analysis.calibration.parameters import parameters, response_of
 from spot_analysis.calibration.refinement import deck_text, refine
 from spot_analysis.calibration.response import NAMES, STORED, stored_response
 from spot_analysis.calibration.view import CONCEPTS
-from spot_analysis.reading.scene_file import load_scene
+from spot_analysis.reading.scene import load_scene
 from spot_analysis.report import calibration_output
 from spot_analysis.statistics.bootstrap import RESAMPLES
 from spot_analysis.statistics.measuring import measure_dumps

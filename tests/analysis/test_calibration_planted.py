@@ -13,7 +13,7 @@ from spot_analysis.calibration.parameters import parameters
 from spot_analysis.calibration.refinement import run_deck
 from spot_analysis.calibration.response import stored_response
 from spot_analysis.calibration.view import CONCEPTS
-from spot_analysis.reading.scene_file import load_scene
+from spot_analysis.reading.scene import load_scene
 from spot_analysis.report import calibration_output
 from spot_analysis.statistics.bootstrap import RESAMPLES
 from spot_analysis.statistics.measuring import measure_dumps

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from spot_analysis.base.errors import AnalysisError, SceneError
 from spot_analysis.reading.container import Container
-from spot_analysis.reading.scene import scene_of
-from spot_analysis.reading.scene_file import load_scene
+from spot_analysis.reading.scene import load_scene, scene_of
 from spot_analysis.report import comparison, left_out
 from spot_analysis.statistics import (bond_angles, bond_order, bonds, cell_imprint, frame_correlation, neighbours, radial_distribution,
                                       run_statistics, velocity_correlation, voronoi_cells)

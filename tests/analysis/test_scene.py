@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 from spot_analysis.base.errors import SceneError
-from spot_analysis.reading.scene import KEYS, NUMBERS, ORIGIN
-from spot_analysis.reading.scene_file import load_scene
+from spot_analysis.reading.scene import KEYS, NUMBERS, ORIGIN, load_scene
 
 from synthetic import SCENE
 

@@ -11,7 +11,7 @@ import pytest
 from scipy.stats import qmc
 from spot_analysis.base.errors import AnalysisError
 from spot_analysis.reading.dump import read_frames
-from spot_analysis.reading.scene_file import load_scene
+from spot_analysis.reading.scene import load_scene
 from spot_analysis.report import comparison, curves, figures
 from spot_analysis.statistics import run_statistics
 from spot_analysis.statistics.interval import choose_interval

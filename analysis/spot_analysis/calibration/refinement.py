@@ -8,7 +8,7 @@ import tempfile
 
 from ..base.progress import Progress
 from ..reading.log import reason_of_failure
-from ..reading.scene_file import load_scene
+from ..reading.scene import load_scene
 from ..statistics.interval import STEADY_FROM
 from ..statistics.measuring import measure_dumps
 from .estimate import CalibrationError

@@ -5,8 +5,7 @@ import os
 import sys
 
 from ..base.errors import AnalysisError
-from ..reading.scene import NUMBERS, ORIGIN
-from ..reading.scene_file import load_scene
+from ..reading.scene import NUMBERS, ORIGIN, load_scene
 from ..report import left_out
 from ..statistics import run_statistics
 from ..statistics.measuring import measure_dumps

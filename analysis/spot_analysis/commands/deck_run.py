@@ -10,7 +10,7 @@ import subprocess
 
 from ..base.errors import AnalysisError
 from ..reading.log import reason_of_failure
-from ..reading.scene_file import load_scene
+from ..reading.scene import load_scene
 from ..statistics import run_statistics
 from ..statistics.measuring import measure_dumps
 from .command_line import print_warning

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a dump does not say: units and geometry of the run."""
+"""What a dump does not say: units and geometry of the run, read from the ``scene.json`` beside the dumps."""
 
+import glob
 import math
+import os
 from dataclasses import MISSING, asdict, dataclass, fields
 
 import numpy as np
 
 from ..base.errors import SceneError
 from .container import Container
+from .json_object import read_object
 
+FILE_NAME = "scene.json"
 PERIOD_KEY = "half_period_y"
 LEAST_PERIOD = 12.0  # d; twice as far as pairs of grains are looked for
 
@@ -90,8 +94,46 @@ def _is_finite(value):
 
 KEYS = (*(f.name for f in fields(Scene) if f.name != "periodic_y"), PERIOD_KEY)
 NUMBERS = tuple(f.name for f in fields(Scene) if f.type is float and f.default is MISSING)
-WALLS = ("half_width_x", "half_depth_y", "orifice_radius")
 ORIGIN = tuple(f.name for f in fields(Scene) if f.type is float and f.default is not MISSING)  # of time and space
+
+
+def load_scene(source, scene_file=None, overrides=None):
+    """The scene of the dumps ``source`` (a folder, file or wildcard).
+
+    scene_file : read instead of the ``scene.json`` in the dumps' folder
+    overrides : key -> value, wins over the file; None values are ignored
+
+    Raises SceneError if there is no such source, or naming the key that is missing, unknown or bad.
+    """
+    if not glob.has_magic(source) and not os.path.exists(source):
+        raise SceneError(f"{source}: no such file or folder")
+    path = scene_file or path_beside(source)
+    values = read_values(path) if scene_file or os.path.exists(path) else {}
+    values.update({key: value for key, value in (overrides or {}).items() if value is not None})
+    return complete_scene(values, source, path)
+
+
+def path_beside(source):
+    """Where the scene file of the dumps would be."""
+    return os.path.join(source if os.path.isdir(source) else os.path.dirname(source), FILE_NAME)
+
+
+def read_values(path):
+    """Key -> value of a scene file; raises SceneError where it is damaged."""
+    return read_object(path, f"the keys {', '.join(NUMBERS)}")
+
+
+def complete_scene(values, source, path):
+    """The Scene of what ``path`` and the command line gave; raises SceneError for a key that is missing or bad."""
+    for key in NUMBERS:
+        if key not in values and not (key == "half_depth_y" and PERIOD_KEY in values):
+            where = f"in {path}" if os.path.exists(path) else f"(no {path})"
+            raise SceneError(f"{source}: scene key '{key}' is missing {where}; "
+                             f"add it there or give it on the command line")
+    try:
+        return scene_of(values)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from error
 
 
 def scene_of(values):
