@@ -20,6 +20,6 @@ scripts/build.sh ci
 scripts/build.sh sanitize
 
 echo "== Tests of spot-core and of fix spot under the address and undefined behaviour sanitizers"
-ctest --test-dir build-sanitize --output-on-failure --no-tests=error -j "$(nproc)" -L "core|lammps" -LE slow
+ctest --test-dir build-sanitize --output-on-failure --no-tests=error -j "$(nproc)" -L "core|lammps" -LE "slow|statistical"
 echo "== All tests"
 ctest --test-dir build --output-on-failure --no-tests=error -j "$(nproc)" "${slow[@]}"

@@ -32,6 +32,7 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <mutex>
 #include <unordered_map>
 
 using namespace LAMMPS_NS;
@@ -65,13 +66,20 @@ std::uint64_t bits_of(double value) {
   return bits;
 }
 
-/// Of all that a grain is, its position to the quantum: LAMMPS rounds positions when it balances its ranks.
-std::uint64_t hash_of(const spot::Grain &grain, double radius, const spot::Quantum &quantum) {
+spot::Vector3 snapped(const spot::Vector3 &position, const spot::Quantum &quantum) {
+  return {quantum.snap(position.x()), quantum.snap(position.y()), quantum.snap(position.z())};
+}
+
+/// Of all that a grain is, its position to the quantum, in the cell: LAMMPS rounds positions when it balances its
+/// ranks.
+std::uint64_t hash_of(const spot::Grain &grain, double radius, const spot::Quantum &quantum,
+                      const spot::Periodic &periodic) {
   std::uint64_t hash = static_cast<std::uint64_t>(grain.id) * 2 + (grain.held ? 1 : 0);
   const auto mix = [&hash](double value) {
     hash = (hash ^ (hash >> 29) ^ bits_of(value + 0.0)) * 0x9e3779b97f4a7c15u;  // no negative zero
   };
-  for (const double at : grain.position) mix(quantum.snap(at));
+  const spot::Vector3 position = periodic.wrap(snapped(grain.position, quantum));
+  for (const double at : position) mix(at);
   mix(radius);
   return hash ^ (hash >> 32);
 }
@@ -81,6 +89,10 @@ void count_hash(std::vector<std::int64_t> &sums, std::uint64_t hash, int sign) {
   sums[0] += sign;
   sums[1] += sign * static_cast<std::int64_t>(hash & 0xffffffffu);
   sums[2] += sign * static_cast<std::int64_t>(hash >> 32);
+}
+
+std::string lost(std::int64_t grain) {
+  return message("grain ", grain, " was lost by LAMMPS: make the simulation box larger");
 }
 
 enum BoundaryKind { PERIODIC = 0, FIXED = 1 };  // as in domain.h
@@ -142,6 +154,7 @@ struct FixSpot::Model {
   std::vector<std::int64_t> drained_at;  // grains that have left through each outlet, as far as this rank knows
   double overlap_after_run = 0.0;
   std::shared_ptr<const spot::Container> container;
+  spot::Periodic cell;  // that of the command, in quanta
   std::unique_ptr<spot::Drainage> drainage;
   std::int64_t windows = 0;  // done since the fix was made; the clock of the spots
   double window = 0.0;       // in time units; until the first step only what it would be
@@ -226,11 +239,27 @@ void FixSpot::check_run() {
     error->all(FLERR, std::string("fix spot does not work with run_style respa"));
   if (domain->triclinic) error->all(FLERR, std::string("fix spot does not work in a triclinic box"));
   for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side)
-      if (domain->boundary[axis][side] != FIXED)
-        error->all(FLERR, message("fix spot needs 'boundary f f f': the ", side ? "upper" : "lower", " boundary in ",
-                                  "xyz"[axis], " is ",
-                                  domain->boundary[axis][side] == PERIODIC ? "periodic" : "shrink-wrapped"));
+    for (int side = 0; side < 2; ++side) {
+      const int kind = domain->boundary[axis][side];
+      if (kind == FIXED || (kind == PERIODIC && axis < 2)) continue;
+      error->all(FLERR, message("fix spot needs 'boundary f f f', or p along x or y where no walls stand: the ",
+                                side ? "upper" : "lower", " boundary in ", "xyz"[axis], " is ",
+                                kind == PERIODIC ? "periodic" : "shrink-wrapped"));
+    }
+  if ((domain->xperiodic || domain->yperiodic) && (domain->box_change_size || domain->box_change_shape))
+    error->all(FLERR, std::string("fix spot does not work in a periodic simulation box that changes in a run"));
+}
+
+/// Before every run: between two of them the box may have been changed.
+void FixSpot::read_period() {
+  std::optional<spot::Interval> cell[2];
+  for (int axis = 0; axis < 2; ++axis)
+    if (domain->periodicity[axis]) cell[axis] = spot::Interval{domain->boxlo[axis], domain->boxhi[axis]};
+  const spot::Periodic periodic(cell[0], cell[1]);
+  if (model->drainage && periodic != model->command.periodic)
+    throw spot::InvalidContainer("the simulation box repeats otherwise than in the last run: give the fix another ID");
+  model->command.periodic = periodic;
+  model->command.outlets.repeat(periodic);
 }
 
 /// A window that the command leaves open follows from the timestep of the first run that has steps.
@@ -326,6 +355,7 @@ void FixSpot::init() {
   // Without a pair style nobody else asks for a communication cutoff, and LAMMPS would warn that it is zero.
   comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
   try {
+    read_period();
     model->command.resolve(model->diameter);
     tell_predicted_outflow();
     if (*model->command.time_ordered && comm->nprocs > 1)
@@ -362,6 +392,21 @@ void FixSpot::fail(const std::exception &e) const {
   error->all(FLERR, text);
 }
 
+/// Along each axis of the two that are horizontal, and not both.
+void FixSpot::require_walls_or_period(const BoxWalls &box) const {
+  const std::optional<spot::Interval> walls[] = {box.x, box.y};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (walls[axis].has_value() != model->command.periodic.along(axis)) continue;
+    const char name = "xy"[axis];
+    throw spot::InvalidContainer(walls[axis]
+                                     ? message("'box' has walls along ", name,
+                                               ", where the simulation box is periodic: write NULL NULL ",
+                                               "for them, or use 'boundary f'")
+                                     : message("'box' has NULL NULL for walls along ", name,
+                                               ", but the simulation box is not periodic there: use 'boundary p'"));
+  }
+}
+
 /// LAMMPS drops what is outside its box, so the walls and the outlet must not be.
 void FixSpot::check_box() {
   const auto require = [this](char axis, double low, double high) {
@@ -374,8 +419,13 @@ void FixSpot::check_box() {
   };
   const SpotCommand &command = model->command;
   if (const auto *box = std::get_if<BoxWalls>(&command.walls)) {
-    require('x', box->x_low, box->x_high);
-    require('y', box->y_low, box->y_high);
+    require_walls_or_period(*box);
+    if (box->x) require('x', box->x->low, box->x->high);
+    if (box->y) require('y', box->y->low, box->y->high);
+  } else if (command.periodic.any()) {
+    throw spot::InvalidContainer(
+        "in a periodic simulation box the walls are those of 'box xlo xhi ylo yhi', with NULL "
+        "NULL along periodic axes");
   } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
     require('x', cylinder->x - cylinder->radius, cylinder->x + cylinder->radius);
     require('y', cylinder->y - cylinder->radius, cylinder->y + cylinder->radius);
@@ -394,7 +444,7 @@ void FixSpot::make_container() {
   const spot::SpotBuffers buffers{*command.side_buffer, *command.base_buffer};
   const spot::Outlets outlets = command.outlets.outlets();
   if (const auto *box = std::get_if<BoxWalls>(&command.walls)) {
-    model->container = spot::box_silo(box->x_low, box->x_high, box->y_low, box->y_high, outlets, buffers);
+    model->container = spot::box_silo(box->x, box->y, command.periodic, outlets, buffers);
   } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
     model->container = spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, outlets, buffers);
   } else if (const auto *shaped = std::get_if<ShapedWalls>(&command.walls)) {
@@ -456,8 +506,10 @@ void FixSpot::make_drainage() {
     *command.time_ordered ? time_ordered(diameter, extent(), run.parts.at(0)) : windowed(run.parts);
   } else {
     const std::vector<spot::Grain> grains = grains_of_lammps();
-    *command.time_ordered ? time_ordered(spot::Packing(diameter, extent(), grains)) : windowed(grains);
+    *command.time_ordered ? time_ordered(spot::Packing(diameter, extent(), grains, command.periodic))
+                          : windowed(grains);
   }
+  model->cell = command.periodic.on(model->drainage->quantum());
 }
 
 void FixSpot::setup(int) {
@@ -484,7 +536,14 @@ void FixSpot::setup(int) {
 std::vector<std::int64_t> FixSpot::hash_of_lammps() const {
   const spot::Quantum &quantum = model->drainage->quantum();
   std::vector<std::int64_t> sums = {0, 0, 0};
-  for (int i = 0; i < atom->nlocal; ++i) count_hash(sums, hash_of(grain_of_lammps(i), atom->radius[i], quantum), 1);
+  std::mutex adding;
+  model->drainage->share_out(atom->nlocal, [&](std::size_t first, std::size_t last) {
+    std::vector<std::int64_t> own = {0, 0, 0};
+    for (int i = static_cast<int>(first); i < static_cast<int>(last); ++i)
+      count_hash(own, hash_of(grain_of_lammps(i), atom->radius[i], quantum, model->cell), 1);
+    const std::lock_guard<std::mutex> lock(adding);
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += own[k];
+  });
   return sums;
 }
 
@@ -494,7 +553,7 @@ void FixSpot::remember_grains() {
   const spot::Quantum &quantum = model->drainage->quantum();
   for (const tagint grain : model->leaving) {
     const int i = local_index(grain);
-    count_hash(model->remembered, hash_of(grain_of_lammps(i), atom->radius[i], quantum), -1);
+    count_hash(model->remembered, hash_of(grain_of_lammps(i), atom->radius[i], quantum, model->cell), -1);
   }
 }
 
@@ -515,7 +574,7 @@ void FixSpot::take_changes() {
   const spot::Quantum &quantum = model->drainage->quantum();
   for (int i = 0; i < atom->nlocal; ++i) {
     now.push_back(grain_of_lammps(i));
-    for (double &at : now.back().position) at = quantum.snap(at);
+    now.back().position = model->cell.wrap(snapped(now.back().position, quantum));
   }
   model->drainage->change_grains(find_changes(own, now, *model->ranks));
 }
@@ -523,9 +582,24 @@ void FixSpot::take_changes() {
 /// Index of a grain in LAMMPS' arrays, which no longer hold it if it was outside the simulation box.
 int FixSpot::local_index(std::int64_t grain) const {
   const int index = model->local[static_cast<tagint>(grain)];
-  if (index < 0)
-    error->one(FLERR, message("fix spot: grain ", grain, " was lost by LAMMPS: make the simulation box larger"));
+  if (index < 0) error->one(FLERR, message("fix spot: ", lost(grain)));
   return index;
+}
+
+/// The coordinate of a grain, in the cell, as LAMMPS wants it: an end of the cell, in quanta, may be outside the
+/// simulation box by rounding.
+double FixSpot::in_box(double coordinate, int axis) const {
+  return model->cell.along(axis) ? std::max(coordinate, domain->boxlo[axis]) : coordinate;
+}
+
+/// Into the image flags of a grain that came into the cell again this far from where it went (a multiple of the
+/// period).
+void FixSpot::count_crossings(int i, int axis, double beyond) {
+  if (beyond == 0.0) return;
+  const int shift = axis == 0 ? 0 : IMGBITS;  // nothing repeats along z
+  const imageint mask = IMGMASK, others = atom->image[i] & ~(mask << shift);
+  const auto periods = static_cast<imageint>(std::lround(beyond / model->cell.length(axis)));
+  atom->image[i] = others | ((((atom->image[i] >> shift) + periods) & mask) << shift);
 }
 
 /// Positions go back to LAMMPS, and so does who has left; after a step the velocity is the displacement over it divided
@@ -535,18 +609,21 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
   const double per_time = 1.0 / update->dt;
   const spot::Quantum &quantum = model->drainage->quantum();
   const auto put = [&](std::int64_t grain, const double *position) {
-    const int i = local_index(grain);
+    const int i = model->local[static_cast<tagint>(grain)];
+    if (i < 0) throw spot::InvalidPacking(lost(grain));  // LAMMPS' errors are for its own thread
     for (int axis = 0; axis < 3; ++axis) {
+      const double before = quantum.snap(atom->x[i][axis]);
+      const double by = model->cell.nearest(position[axis] - before, axis);
       if (after_step) {
-        const double by = position[axis] - quantum.snap(atom->x[i][axis]);
         atom->v[i][axis] = by * per_time;
         if (peratom_flag) array_atom[i][axis] += by;
       }
-      atom->x[i][axis] = position[axis];
+      count_crossings(i, axis, before + by - position[axis]);
+      atom->x[i][axis] = in_box(position[axis], axis);
     }
   };
   if (comm->nprocs == 1) {
-    model->drainage->visit_grains([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); });
+    model->drainage->visit_grains_at_once([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); });
     for (const spot::Grain &grain : drained) model->leaving.push_back(static_cast<tagint>(grain.id));
     return;
   }
@@ -596,9 +673,9 @@ void FixSpot::initial_integrate(int) {
 
 /// Each through the outlet that was nearest when it left.
 void FixSpot::count_at_outlets(const std::vector<spot::Grain> &drained) {
-  const spot::Outlets outlets = model->command.outlets.outlets();
+  const spot::Outlets &outlets = model->container->outlets();
   for (const spot::Grain &grain : drained)
-    ++model->drained_at[static_cast<std::size_t>(&outlets.nearest(grain.position) - &outlets[0])];
+    ++model->drained_at[static_cast<std::size_t>(&model->container->nearest_outlet(grain.position) - &outlets[0])];
 }
 
 /// Another fix may hand grains to other ranks before LAMMPS asks for those that leave.
@@ -628,8 +705,11 @@ void FixSpot::pre_exchange() {
 
 void FixSpot::end_of_step() {
   // fix balance has rounded positions when it looked at them in units of the box, and new grains come with any.
-  for (int i = 0; i < atom->nlocal; ++i)
-    for (int axis = 0; axis < 3; ++axis) atom->x[i][axis] = model->drainage->quantum().snap(atom->x[i][axis]);
+  model->drainage->share_out(atom->nlocal, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        atom->x[i][axis] = in_box(model->drainage->quantum().snap(atom->x[i][axis]), axis);
+  });
   list_spots();
 }
 

@@ -19,6 +19,8 @@ namespace spot {
 struct Grain;
 }
 
+struct BoxWalls;
+
 namespace LAMMPS_NS {
 
 /// Drainage of dense grains by diffusing spots of free volume; see doc/fix_spot.rst.
@@ -66,13 +68,17 @@ class FixSpot : public Fix {
   void make_container();
   void make_drainage();
   double extent() const;
+  void read_period();
   void check_box();
+  void require_walls_or_period(const BoxWalls &) const;
   std::vector<std::int64_t> hash_of_lammps() const;
   void remember_grains();
   bool somebody_changed_grains() const;
   void take_changes();
   spot::Grain grain_of_lammps(int) const;
   std::vector<spot::Grain> grains_of_lammps() const;
+  double in_box(double, int) const;
+  void count_crossings(int, int, double);
   void write_grains(const std::vector<spot::Grain> &, bool);
   void offer_output_per_atom();
   void add_moves_received();

@@ -91,6 +91,11 @@ void OutletCommand::validate() const {
   static_cast<void>(outlets());
 }
 
+void OutletCommand::repeat(const spot::Periodic& periodic) {
+  const spot::Outlets repeated = outlets().repeated(periodic);
+  outlets_.assign(repeated.begin(), repeated.end());
+}
+
 std::optional<spot::Orifice> OutletCommand::single_orifice() const {
   return outlets_.size() == 1 ? last_orifice_ : std::nullopt;
 }

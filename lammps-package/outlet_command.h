@@ -28,6 +28,9 @@ class OutletCommand {
   /// Throws spot::InvalidParameter if something is missing, or does not fit together; and as spot::Outlets does.
   void validate() const;
 
+  /// From now on space repeats like this.
+  void repeat(const spot::Periodic& periodic);
+
   /// In the order in which they were given.
   spot::Outlets outlets() const { return spot::Outlets(outlets_); }
 

@@ -21,6 +21,20 @@ void set_walls(SpotCommand& command, decltype(SpotCommand::walls) walls) {
   command.walls = std::move(walls);
 }
 
+/// Of two walls, or `NULL NULL` for none.
+std::optional<spot::Interval> read_places(Words& words, const char* low, const char* high) {
+  if (!words.next_is("NULL")) {
+    const double at = words.number(low);
+    return spot::Interval{at, words.number(high)};
+  }
+  words.value(low);
+  if (!words.next_is("NULL"))
+    throw InvalidParameter(message("'box' has NULL for ", low, " but not for ", high,
+                                   ": NULL NULL stands for no walls, where the simulation box is periodic"));
+  words.value(high);
+  return std::nullopt;
+}
+
 /// One shape more, or the first.
 void read_shaped_walls(SpotCommand& command, Words& words) {
   if (!std::holds_alternative<ShapedWalls>(command.walls)) set_walls(command, ShapedWalls());
@@ -58,12 +72,8 @@ const std::map<std::string, Reader>& readers() {
   static const std::map<std::string, Reader> all = {
       {"box",
        [](SpotCommand& c, Words& w) {
-         BoxWalls walls{};
-         walls.x_low = w.number("xlo");
-         walls.x_high = w.number("xhi");
-         walls.y_low = w.number("ylo");
-         walls.y_high = w.number("yhi");
-         set_walls(c, walls);
+         const auto x = read_places(w, "xlo", "xhi"), y = read_places(w, "ylo", "yhi");
+         set_walls(c, BoxWalls{x, y});
        }},
       {"cylinder",
        [](SpotCommand& c, Words& w) {
@@ -231,9 +241,21 @@ void SpotCommand::resolve(double diameter) {
 
 namespace {
 
+std::string text_of_places(const std::optional<spot::Interval>& walls) {
+  return walls ? precise(walls->low, ' ', walls->high) : "NULL NULL";
+}
+
+std::string text_of_period(const spot::Periodic& periodic) {
+  std::string text;
+  for (int axis = 0; axis < 2; ++axis)
+    if (periodic.along(axis))
+      text += precise(" periodic ", "xy"[axis], ' ', periodic.low(axis), ' ', periodic.high(axis));
+  return text;
+}
+
 std::string text_of_walls(const decltype(SpotCommand::walls)& walls) {
   if (const auto* box = std::get_if<BoxWalls>(&walls))
-    return precise("box ", box->x_low, ' ', box->x_high, ' ', box->y_low, ' ', box->y_high);
+    return "box " + text_of_places(box->x) + ' ' + text_of_places(box->y);
   if (const auto* cylinder = std::get_if<CylinderWalls>(&walls))
     return precise("cylinder ", cylinder->x, ' ', cylinder->y, ' ', cylinder->radius);
   if (const auto* shaped = std::get_if<ShapedWalls>(&walls)) return shaped->text();
@@ -243,7 +265,7 @@ std::string text_of_walls(const decltype(SpotCommand::walls)& walls) {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
-  return {{"walls", text_of_walls(walls)},
+  return {{"walls", text_of_walls(walls) + text_of_period(periodic)},
           {"orifice", outlets.text_of_outlets()},
           {"radius", precise(spots.radius)},
           {"profile", spots.profile->name()},

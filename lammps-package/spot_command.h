@@ -10,12 +10,13 @@
 
 #include "outlet_command.h"
 #include "shaped_walls.h"
+#include "spot/geometry/periodic.hpp"
 #include "spot/relaxation/calibration.hpp"
 #include "spot/walk/parameters.hpp"
 
-/// `box xlo xhi ylo yhi`: four vertical plane walls.
+/// `box xlo xhi ylo yhi`: four vertical plane walls. Where there is no interval, `NULL NULL`, space repeats instead.
 struct BoxWalls {
-  double x_low, x_high, y_low, y_high;
+  std::optional<spot::Interval> x, y;
 };
 
 /// `cylinder x y radius`: an upright cylinder.
@@ -39,6 +40,7 @@ enum class Accuracy {
 /// given, it is empty and follows from the grain diameter or the timestep, see resolve().
 struct SpotCommand {
   std::variant<std::monostate, BoxWalls, CylinderWalls, RegionWalls, ShapedWalls> walls;
+  spot::Periodic periodic;  // not of the command, but of the simulation box
   OutletCommand outlets;
   spot::SpotParameters spots;
   spot::RelaxationParameters relaxation;

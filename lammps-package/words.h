@@ -26,6 +26,8 @@ class Words {
     return text;
   }
 
+  bool next_is(const char* word) const { return !empty() && words_[next_] == word; }
+
   bool next_is_number() const {
     double ignored;
     return !empty() && read(words_[next_], ignored);

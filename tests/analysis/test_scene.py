@@ -89,10 +89,3 @@ def test_origin_of_time_and_space(tmp_path):
     assert scene.time(350) == pytest.approx(0, abs=1e-12)
     assert scene.time(450) == pytest.approx(1 / 0.5)
     np.testing.assert_allclose(scene.positions(np.array([[0.5, -1, 4], [1, -1, 5]])), [[0, 0, 0], [1, 0, 2]])
-
-
-def test_a_silo_that_is_periodic_along_y_is_refused(tmp_path):
-    periodic = {**SCENE, "half_period_y": SCENE["half_depth_y"]}
-    del periodic["half_depth_y"]
-    with pytest.raises(SceneError, match="scene.json: the silo is periodic along y"):
-        load_scene(write(tmp_path, periodic))

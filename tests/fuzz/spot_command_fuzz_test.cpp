@@ -26,6 +26,7 @@ Words words_of(const std::string& text) {
 
 /// Each of the keywords stands in at least one of them.
 const std::vector<std::string> valid = {
+    "box -5 5 NULL NULL slot 0 0 0 8 12 speed 3.2 injection 388",
     "box -5 5 -4 4 orifice 0 0 0 3.5 speed 3.2 injection 388",
     "box -25 25 -4 4 orifice 0 0 0 4 speed 3.2 injection 380 volume 77 threads 2 steps together accuracy fast "
     "critical 0.58 1.5 dilatancy 0.1 surface 3 nonaffine 0.1 0.5",
@@ -36,7 +37,8 @@ const std::vector<std::string> valid = {
     "window 0.02 "
     "buffer 0.5 0"};
 
-const Words numbers = {"nan",
+const Words numbers = {"NULL",
+                       "nan",
                        "-nan",
                        "inf",
                        "-inf",

@@ -167,10 +167,13 @@ TEST(SpotCommand, SchedulesOf2006And2010GoWithTheirAlphaAndNoMomentum) {
 
 TEST(SpotCommand, ReadsWalls) {
   const auto box = std::get<BoxWalls>(parse(complete).walls);
-  EXPECT_EQ(box.x_low, -5.0);
-  EXPECT_EQ(box.x_high, 5.0);
-  EXPECT_EQ(box.y_low, -4.0);
-  EXPECT_EQ(box.y_high, 4.0);
+  EXPECT_EQ(box.x->low, -5.0);
+  EXPECT_EQ(box.x->high, 5.0);
+  EXPECT_EQ(box.y->low, -4.0);
+  EXPECT_EQ(box.y->high, 4.0);
+  const auto open = std::get<BoxWalls>(parse("box -5 5 NULL NULL orifice 0 0 0 3 speed 1 injection 1").walls);
+  EXPECT_EQ(open.x->high, 5.0);
+  EXPECT_FALSE(open.y.has_value());
   const auto cylinder = std::get<CylinderWalls>(parse("cylinder 1 2 7 orifice 1 2 3 3 speed 1 injection 1").walls);
   EXPECT_EQ(cylinder.x, 1.0);
   EXPECT_EQ(cylinder.y, 2.0);

@@ -207,8 +207,8 @@ def test_grain_at_the_wall(tmp_path):
 
 
 @pytest.mark.parametrize("boundary, said", [
-    ("p f f", ["lower boundary in x is periodic", "boundary f f f"]),
-    ("f p f", ["lower boundary in y is periodic"]),
+    ("f f p", ["lower boundary in z is periodic", "boundary f f f"]),
+    ("s f f", ["lower boundary in x is shrink-wrapped"]),
     ("f f s", ["lower boundary in z is shrink-wrapped", "boundary f f f"]),
     ("f f fm", ["upper boundary in z is shrink-wrapped"]),
 ])

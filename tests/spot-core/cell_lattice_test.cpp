@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "scenes.hpp"
@@ -69,7 +70,7 @@ TEST(CellLatticeBruteForce, RowsAreTheCellsWithinReach) {
         const Vector3 centre = draws.in_box(low, high) - of.low();
         const double reach = draws.uniform(0.5, 4.0);
         std::vector<spot::CellRow> rows;
-        of.find_rows(centre, reach, of.first_layer(), of.last_layer(), with_images, rows);
+        of.find_rows(centre, reach, {of.first_layer(), of.last_layer(), with_images}, rows);
         std::set<std::uint32_t> found;
         for (const auto& row : rows)
           for (std::uint32_t cell = row.first; cell < row.last; ++cell) EXPECT_TRUE(found.insert(cell).second);
@@ -87,6 +88,34 @@ TEST(CellLatticeBruteForce, RowsAreTheCellsWithinReach) {
           }
           if (!held) continue;
           EXPECT_EQ(found.count(of.number_of(cell)), 1u);
+        }
+      }
+    }
+}
+
+TEST(CellLatticeBruteForce, PartsHaveEachRowOnceAndNeighboursInOthers) {
+  scenes::Draws draws(3);
+  for (const Periodic& periodic : {none, along_both})
+    for (const int parts : {2, 3}) {
+      const CellLattice of = lattice(periodic);
+      const Vector3 centre = draws.in_box(low, high) - of.low();
+      std::vector<spot::CellRow> all;
+      of.find_rows(centre, 3.0, {of.first_layer(), of.last_layer(), true}, all);
+      std::map<std::uint32_t, int> part_of;
+      for (int part = 0; part < parts; ++part) {
+        std::vector<spot::CellRow> rows;
+        of.find_rows(centre, 3.0, {of.first_layer(), of.last_layer(), true, part, parts}, rows);
+        for (const auto& row : rows) EXPECT_TRUE(part_of.emplace(row.first / of.cells_in_row(), part).second);
+      }
+      EXPECT_EQ(part_of.size(), all.size());
+      const std::uint32_t in_layer = of.cells_in_layer() / of.cells_in_row();
+      for (const auto& [row, part] : part_of) {
+        const auto beside = part_of.find(row + 1), above = part_of.find(row + in_layer);
+        if (beside != part_of.end() && (row + 1) % in_layer != 0) {
+          EXPECT_NE(beside->second, part);
+        }
+        if (above != part_of.end()) {
+          EXPECT_NE(above->second, part);
         }
       }
     }

@@ -51,11 +51,12 @@ TEST(DilationFieldUnit, ASpotTakesTheVolumeOfItsGrains) {
 TEST(DilationFieldAnalytic, EvenSpotsDilateEvenlyUpToTheWalls) {
   const SpotParameters spots = dilating_spots();
   Alone alone;
+  spot::Workers workers(1);
   const double spacing = 10.3 / 40;
   const auto box = scenes::small_silo(5.15, 5.15);
   const auto everywhere = lattice({-5.15, -5.15, 0.0}, {5.15, 5.15, 30.0}, spacing);
   DilationField field(spots, *box, 1.0);
-  field.count(everywhere, alone);
+  field.count(everywhere, alone, workers);
   for (const Vector3& place : {Vector3(0, 0, 10), Vector3(5.1, 0, 12.3), Vector3(-5.1, 5.1, 8.0), Vector3(1, -2, 0.5)})
     EXPECT_NEAR(field.at(place) / share(spots, spacing), 1.0, 0.03) << place.transpose();
 
@@ -64,7 +65,7 @@ TEST(DilationFieldAnalytic, EvenSpotsDilateEvenlyUpToTheWalls) {
   for (const Vector3& place : everywhere)
     if (place.head<2>().norm() < 5.15) inside.push_back(place);
   DilationField round(spots, *pipe, 1.0);
-  round.count(inside, alone);
+  round.count(inside, alone, workers);
   for (const Vector3& place : {Vector3(0, 0, 10), Vector3(5.1, 0, 12.3), Vector3(-3.6, 3.6, 8.0)})
     EXPECT_NEAR(round.at(place) / share(spots, spacing), 1.0, 0.04) << place.transpose();
 }
@@ -77,8 +78,9 @@ TEST(DilationFieldBruteForce, EqualsTheSumOverAllSpots) {
   std::vector<Vector3> places;
   for (int k = 0; k < 300; ++k) places.push_back(draws.in_box({-9, -7, -4}, {8, 9, 11}));
   Alone alone;
+  spot::Workers workers(3);
   DilationField field(spots, *space, 1.0);
-  field.count(places, alone);
+  field.count(places, alone, workers);
   const auto hat = [](double a, double b) { return std::max(0.0, 1.0 - std::abs(a - b)); };
   const Vector3 origin = space->outlets()[0].centre;
   for (int k = 0; k < 100; ++k) {
@@ -102,9 +104,10 @@ TEST(DilationFieldAnalytic, OneSpotDilatesByItsVolumeInAll) {
   const SpotParameters spots = dilating_spots();
   const auto space = scenes::empty_space();
   Alone alone;
+  spot::Workers workers(1);
   for (const Vector3& place : {Vector3(0.0, 0.0, 0.0), Vector3(0.7, -1.1, 2.9), Vector3(1.5, 1.5, 1.5)}) {
     DilationField field(spots, *space, 1.0);
-    field.count({place}, alone);
+    field.count({place}, alone, workers);
     double sum = 0.0;
     const double step = 0.5;
     for (const Vector3& at : lattice(place - Vector3::Constant(10.0), place + Vector3::Constant(10.0), step))
@@ -119,10 +122,11 @@ TEST(DilationFieldUnit, RelativeSpeedIsTheSquareOfTheDilationWithinBounds) {
   const double spacing = 12.0 / 20;
   const auto places = lattice({-6, -6, 0}, {6, 6, 30}, spacing);
   Alone alone;
+  spot::Workers workers(1);
   for (const double ratio : {0.1, 0.5, 1.0, 1.7, 3.0}) {
     spots.dilation = share(spots, spacing) / ratio;
     DilationField field(spots, *silo, 1.0);
-    field.count(places, alone);
+    field.count(places, alone, workers);
     const double expected = ratio < 0.3   ? spot::calibration::slowest_relative_speed
                             : ratio > 2.0 ? spot::calibration::fastest_relative_speed
                                           : ratio * ratio;
@@ -133,9 +137,10 @@ TEST(DilationFieldUnit, RelativeSpeedIsTheSquareOfTheDilationWithinBounds) {
 TEST(DilationFieldUnit, NoSpotsAndNoRoom) {
   const auto silo = scenes::small_silo(6.0, 6.0);
   Alone alone;
+  spot::Workers workers(1);
   DilationField field(dilating_spots(), *silo, 1.0);
   EXPECT_EQ(field.relative_speed({0, 0, 15}), spot::calibration::slowest_relative_speed);
-  field.count({}, alone);
+  field.count({}, alone, workers);
   EXPECT_EQ(field.at({0, 0, 15}), 0.0);
   EXPECT_EQ(field.relative_speed({0, 0, -20}), spot::calibration::fastest_relative_speed);  // where no grain can be
 }
@@ -144,8 +149,9 @@ TEST(DilationFieldUnit, OtherWallsLeaveOtherVolumes) {
   const SpotParameters spots = dilating_spots();
   const auto wide = scenes::small_silo(20.0, 20.0), narrow = scenes::small_silo(5.0, 5.0);
   Alone alone;
+  spot::Workers workers(1);
   DilationField field(spots, *wide, 1.0);
-  field.count({{4.9, 0.0, 15.0}}, alone);
+  field.count({{4.9, 0.0, 15.0}}, alone, workers);
   const double before = field.at({4.9, 0.0, 15.0});
   field.replace_container(*narrow);
   EXPECT_GT(field.at({4.9, 0.0, 15.0}), 1.3 * before);
@@ -154,8 +160,9 @@ TEST(DilationFieldUnit, OtherWallsLeaveOtherVolumes) {
 TEST(DilationFieldInvariance, SavedCountsComeBack) {
   const auto silo = scenes::small_silo(6.0, 6.0);
   Alone alone;
+  spot::Workers workers(1);
   DilationField field(dilating_spots(), *silo, 1.0), other(dilating_spots(), *silo, 1.0);
-  field.count(lattice({-5, -4, 1}, {3, 4, 20}, 0.9), alone);
+  field.count(lattice({-5, -4, 1}, {3, 4, 20}, 0.9), alone, workers);
   Bytes bytes;
   field.save(bytes);
   ByteReader reader(bytes);

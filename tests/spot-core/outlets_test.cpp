@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -237,6 +238,48 @@ TEST(OutletsBruteForce, ShapedContainersAreOpenAtAllOfThem) {
     ASSERT_NEAR(first->share, same->share, 1e-9);
   }
   EXPECT_GT(paths, 500);
+}
+
+TEST(OutletsUnit, ASlotAsLongAsThePeriodHasNoEnds) {
+  const spot::Periodic periodic(std::nullopt, spot::Interval{-6.0, 10.0});
+  const auto silo = spot::box_silo(spot::Interval{-9.0, 9.0}, std::nullopt, periodic,
+                                   Outlet({1.0, 0.0, 0.0}, std::make_shared<Slot>(8.0, 16.0)), {0.5, 2.0});
+  const Outlet& outlet = silo->outlets()[0];
+  EXPECT_EQ(outlet.hole->name(), "slot of 8 by 16 without ends along y");
+  EXPECT_EQ(outlet.hole->half_width(1), 8.0);
+  EXPECT_EQ(outlet.hole->widest_radius(), 4.0);
+  // Where the cells meet there is no rim, for grains, spots or paths; along x there is.
+  for (const double y : {-6.0, 9.9, 10.0, 2.0}) {
+    spot::WallContacts contacts;
+    silo->contacts({1.0, y, 0.1}, 0.6, contacts);
+    EXPECT_EQ(contacts.begin(), contacts.end()) << y;
+    EXPECT_TRUE(silo->is_over_outlet({4.9, y, -1.0}));
+    EXPECT_FALSE(silo->is_over_outlet({5.1, y, -1.0}));
+    EXPECT_FALSE(silo->first_wall({1.0, y - 0.3, 0.5}, {1.0, y + 0.3, -0.5}).has_value());
+    EXPECT_TRUE(silo->first_wall({5.1, y - 0.3, 0.5}, {5.1, y + 0.3, -0.5}).has_value());
+    EXPECT_EQ(silo->keep_spot_inside({1.0, y, 0.2}, {1.0, y + 0.4, 0.4}), Vector3(1.0, y + 0.4, 0.4));
+    EXPECT_LT(silo->keep_spot_inside({2.5, y, 0.2}, {3.9, y, 0.4}).x(), 3.2);
+    silo->contacts({4.8, y, 0.1}, 0.6, contacts);
+    EXPECT_EQ(std::distance(contacts.begin(), contacts.end()), 1) << y;
+  }
+  // Spots are born up to the ends of the cell along y, a margin off the rims along x.
+  double least = 99.0, most = -99.0;
+  for (int k = 0; k <= 1000; ++k) {
+    const Vector3 place = outlet.centre + outlet.hole->point(2.6, 0.001 * k, 0.001 * k);
+    least = std::min(least, place.y());
+    most = std::max(most, place.y());
+    EXPECT_LE(std::abs(place.x() - 1.0), 1.4 + 1e-12);
+  }
+  EXPECT_EQ(least, -6.0);
+  EXPECT_EQ(most, 10.0);
+  // Beverloo's law takes nothing off a length that has no ends.
+  const spot::BeverlooLaw law;
+  EXPECT_NEAR(outlet.hole->discharge(law, 1.0), law.slot * 16.0 * std::pow(8.0 - law.margin, 1.5), 1e-12);
+  EXPECT_THAT(refusal_of([&] {
+                spot::box_silo(spot::Interval{-9.0, 9.0}, std::nullopt, periodic,
+                               Outlet({1.0, 2.0, 0.0}, std::make_shared<Slot>(8.0, 16.1)), {0.5, 2.0});
+              }),
+              testing::HasSubstr("reaches out of the cell"));
 }
 
 }  // namespace

@@ -371,9 +371,10 @@ TEST(DilationFieldBruteForce, ImagesOfSpotsDilate) {
       for (int iy = -2; iy <= 2; ++iy) images.push_back(places.back() + Vector3(12.0 * ix, 10.0 * iy, 0.0));
   }
   spot::Alone alone;
+  spot::Workers workers(1);
   spot::DilationField wide(spots, space, 1.0), narrow(spots, repeated, 1.0);
-  wide.count(images, alone);
-  narrow.count(places, alone);
+  wide.count(images, alone, workers);
+  narrow.count(places, alone, workers);
   for (int k = 0; k < 200; ++k) {
     const Vector3 at = draws.in_box({-8, -6, 0}, {8, 8, 10});
     EXPECT_NEAR(narrow.at(at), wide.at(at), 1e-4 * wide.at(at) + 1e-12) << at.transpose();

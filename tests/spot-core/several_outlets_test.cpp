@@ -215,6 +215,27 @@ TEST(SeveralOutletsUnit, ASlotDrains) {
   EXPECT_GT(ledger.drained(), 50u);
 }
 
+TEST(SeveralOutletsUnit, ASlotWithoutEndsDrainsAllAlong) {
+  const spot::Periodic periodic(std::nullopt, spot::Interval{-5.0, 5.0});
+  const std::shared_ptr<const spot::Container> container =
+      spot::box_silo(spot::Interval{-6.0, 6.0}, std::nullopt, periodic,
+                     Outlet({0.0, 0.0, 0.0}, std::make_shared<spot::Slot>(6.0, 10.0)), spot::SpotBuffers{1.0, 2.6});
+  SpotParameters one = spots();
+  one.injection_rate = 250.0;
+  const auto grains = scenes::dense_grains({-5.5, -4.5, 0.5}, {5.5, 4.5, 8.0}, 0.01, 4);
+  WindowedDrainage drainage(one, relaxation(), limits, window, 1, container, 1.0, 100.0, grains);
+  invariants::Ledger ledger(grains, 1.0, limits, *container);
+  int at_ends = 0, in_middle = 0;
+  for (int k = 1; k <= 60; ++k) {
+    drainage.advance_to(k * window);
+    ASSERT_EQ(ledger.check(drainage), "") << k;
+    for (const spot::Spot& spot : drainage.spots()) ++(std::abs(spot.position.y()) > 2.5 ? at_ends : in_middle);
+  }
+  EXPECT_GT(ledger.drained(), 60u);
+  // As many there as here; a few hundred spots, each seen in many windows.
+  EXPECT_NEAR(at_ends, in_middle, 0.2 * (at_ends + in_middle));
+}
+
 TEST(SeveralOutletsUnit, GrainsMayBeInAnyOfThemAndNotBetween) {
   const spot::GrainChecks checks(limits, silo(), 1.0);
   const auto refusal = [&](const Vector3& place) {

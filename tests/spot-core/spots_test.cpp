@@ -227,6 +227,7 @@ TEST(SpotsInvariance, WindowsOfRanksAreThoseInTheOrderOfTime) {
   const auto space = space_above_orifice();
   const SpotParameters parameters = scenes::paper_spots();
   const double window = 1.0 / 64.0;
+  spot::Workers workers(3);
   Walks expected;
   Spots in_order(parameters, *space, 1.0);
   while (const auto move = in_order.next_step(1.0, *space)) {
@@ -248,7 +249,7 @@ TEST(SpotsInvariance, WindowsOfRanksAreThoseInTheOrderOfTime) {
         spots.take_out_others(here);
         spots.give_birth(k * window, *space, here);
         std::set<std::int64_t> gone;
-        spots.step_until(k * window, *space, [&](const Spot&, const std::vector<Move>& moves) {
+        spots.step_until(k * window, *space, workers, [&](const Spot&, const std::vector<Move>& moves) {
           for (const Move& move : moves) {
             // A window's steps are made before it is known which was the last.
             if (gone.count(move.spot) == 0) record(walks, move);
@@ -598,10 +599,11 @@ TEST(SpotsInvariance, SpotsOfWindowsLeaveWhatThoseInTheOrderOfTimeDo) {
   Volumes in_windows;
   Spots windowed(parameters, *space, 1.0);
   spot::Alone alone;
+  spot::Workers workers(2);
   for (int k = 1; k <= windows; ++k) {
     std::vector<Move> all;
     windowed.give_birth(k * interval, *space, [](const Spot&) { return true; });
-    windowed.step_until(k * interval, *space, [&](const Spot&, const std::vector<Move>& moves) {
+    windowed.step_until(k * interval, *space, workers, [&](const Spot&, const std::vector<Move>& moves) {
       all.insert(all.end(), moves.begin(), moves.end());
     });
     for (const Move& move : all) carry(windowed, move, in_windows);

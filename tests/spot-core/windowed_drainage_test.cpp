@@ -85,7 +85,8 @@ class PlainWindows {
     for (const Live& live : live_)
       if (!live.out) places.push_back(live.spot.position);
     spot::Alone alone;
-    field.count(places, alone);
+    spot::Workers workers(1);
+    field.count(places, alone, workers);
     const auto set_speed = [&](spot::Spot& spot, double time) {
       if (spots_.dilation > 0.0) walk_.set_relative_speed(spot, time, field.relative_speed(spot.position));
     };

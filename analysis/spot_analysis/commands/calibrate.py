@@ -51,6 +51,9 @@ def calibrate():
     if options.refine > 0 and not os.path.isfile(options.deck):
         raise AnalysisError(f"{options.deck}: no such deck to refine with; give one with --deck")
     run = command_line.open_run(options.dumps, options, "", "calibrate", CONCEPTS)
+    if run.scene.periodic_y:
+        raise AnalysisError(f"{options.dumps}: the silo is periodic along y, but parameters are measured between walls there, which "
+                            "cut spots off")
     measured = measure(run, options.start, options.end, options.buffer)
     warn_of_widening(measured.view, command_line.print_warning)
     response = stored_response(options.response)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The silo's walls, base and orifice; lengths in d."""
+"""The silo's walls, base and orifice, and where it repeats; lengths in d."""
 
 from dataclasses import dataclass
 
@@ -8,13 +8,40 @@ import numpy as np
 GRAIN_RADIUS = 0.5
 
 
+def nearest_image(differences, period):
+    """Differences of positions, or positions as seen from the origin, (n, 3), to the nearest image along y; period : None where
+    nothing repeats."""
+    if period is None:
+        return differences
+    shortened = differences.copy()
+    shortened[:, 1] -= period * np.rint(differences[:, 1] / period)
+    return shortened
+
+
 @dataclass(frozen=True)
 class Container:
-    """Walls x = +-half_width and y = +-half_depth, base z = 0 with a circular orifice at the origin."""
+    """Walls x = +-half_width and y = +-half_depth, base z = 0 with a circular orifice at the origin.
+
+    periodic : there are no walls across y, along which the silo repeats every 2 half_depth. Positions may then be in any period.
+    """
 
     half_width: float
     half_depth: float
     orifice_radius: float
+    periodic: bool = False
+
+    @property
+    def period(self):
+        """Of y; None where there are walls."""
+        return 2 * self.half_depth if self.periodic else None
+
+    def depth_off_walls(self, layer):
+        """|y| up to which grains are at least ``layer`` from walls across y; infinite where there are none."""
+        return np.inf if self.periodic else self.half_depth - layer
+
+    def in_period(self, positions):
+        """Positions (n, 3) with |y| <= half_depth, where the silo repeats; as they are otherwise."""
+        return nearest_image(positions, self.period)
 
     def outside(self, positions):
         """Which centres are outside: beyond a wall, or through the base.
@@ -24,9 +51,9 @@ class Container:
         Grains that left through the orifice fall and spread: below the base they are looked for within 45 degrees
         of its rim, and a centre elsewhere has come through the plate.
         """
-        x, y, z = positions.T
+        x, y, z = self.in_period(positions).T
         below = z < 0
-        beyond_wall = (np.abs(x) > self.half_width) | (np.abs(y) > self.half_depth)
+        beyond_wall = (np.abs(x) > self.half_width) | (np.abs(y) > self.depth_off_walls(0))
         return np.where(below, np.hypot(x, y) > self.orifice_radius - z, beyond_wall)
 
     def wall_overlap(self, positions):
@@ -34,7 +61,7 @@ class Container:
 
         The rim of the orifice is left out: in DEM it is a mesh, a polygon that may have gaps at the walls.
         """
-        x, y, z = positions.T
+        x, y, z = self.in_period(positions).T
         over_base = np.where(np.hypot(x, y) > self.orifice_radius, z, np.inf)
-        distance = np.minimum.reduce([self.half_width - np.abs(x), self.half_depth - np.abs(y), over_base])
+        distance = np.minimum.reduce([self.half_width - np.abs(x), self.depth_off_walls(0) - np.abs(y), over_base])
         return np.where(z > 0, np.maximum(GRAIN_RADIUS - distance, 0), 0)

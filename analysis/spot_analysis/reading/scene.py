@@ -13,6 +13,8 @@ from .container import Container
 from .json_object import read_object
 
 FILE_NAME = "scene.json"
+PERIOD_KEY = "half_period_y"
+LEAST_PERIOD = 12.0  # d; twice as far as pairs of grains are looked for
 
 
 @dataclass(frozen=True)
@@ -23,6 +25,8 @@ class Scene:
     gravity : acceleration g
     timestep : time of one step of the dumps' TIMESTEP
     half_width_x, half_depth_y : walls at x = axis_x +- half_width_x and y = axis_y +- half_depth_y
+    periodic_y : there are no walls across y, along which the silo repeats every 2 half_depth_y; a scene file says so by
+        half_period_y in the place of half_depth_y
     orifice_radius : of the circular orifice on the axis
     opening_time : when the orifice opens, counted from TIMESTEP 0
     axis_x, axis_y, base_z : where the axis of silo and orifice meets the base
@@ -42,6 +46,7 @@ class Scene:
     base_z: float = 0.0
     program: str = "unknown"
     grains: int = None
+    periodic_y: bool = False
 
     def __post_init__(self):
         for key in NUMBERS:
@@ -52,6 +57,10 @@ class Scene:
                 raise SceneError(f"scene: '{key}' must be a number, not {getattr(self, key)!r}")
         if not isinstance(self.program, str):
             raise SceneError(f"scene: 'program' must be a text, not {self.program!r}")
+        if self.periodic_y and 2 * self.half_depth_y < LEAST_PERIOD * self.diameter:
+            raise SceneError(f"scene: '{PERIOD_KEY}' is {self.half_depth_y:g}, half of a period of "
+                             f"{2 * self.half_depth_y / self.diameter:g} d, but must be half of {LEAST_PERIOD:g} d or more: "
+                             f"no pair of grains may be counted twice")
 
     @property
     def tau(self):
@@ -69,19 +78,22 @@ class Scene:
     def container(self):
         """The container in units of d."""
         return Container(self.half_width_x / self.diameter, self.half_depth_y / self.diameter,
-                         self.orifice_radius / self.diameter)
+                         self.orifice_radius / self.diameter, self.periodic_y)
 
     def as_dict(self):
-        return asdict(self)
+        """key -> value, as in a scene file."""
+        values = asdict(self)
+        if values.pop("periodic_y"):
+            values[PERIOD_KEY] = values.pop("half_depth_y")
+        return values
 
 
 def _is_finite(value):
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
-KEYS = tuple(f.name for f in fields(Scene))
+KEYS = (*(f.name for f in fields(Scene) if f.name != "periodic_y"), PERIOD_KEY)
 NUMBERS = tuple(f.name for f in fields(Scene) if f.type is float and f.default is MISSING)
-WALLS = ("half_width_x", "half_depth_y", "orifice_radius")
 ORIGIN = tuple(f.name for f in fields(Scene) if f.type is float and f.default is not MISSING)  # of time and space
 
 
@@ -95,43 +107,26 @@ def load_scene(source, scene_file=None, overrides=None):
     """
     if not glob.has_magic(source) and not os.path.exists(source):
         raise SceneError(f"{source}: no such file or folder")
-    path = scene_file or _path_beside(source)
-    values = _read(path) if scene_file or os.path.exists(path) else {}
+    path = scene_file or path_beside(source)
+    values = read_values(path) if scene_file or os.path.exists(path) else {}
     values.update({key: value for key, value in (overrides or {}).items() if value is not None})
-    if "half_period_y" in values:
-        raise SceneError(f"{path}: the silo is periodic along y, but the statistics need walls at y = +-half_depth_y")
-    return _complete(values, source, path)
+    return complete_scene(values, source, path)
 
 
-def scene_beside(source):
-    """The scene of ``source``, and which walls it tells: "box", "periodic" along y (half_depth_y is half of the period), or None.
-
-    (None, None) where there is no ``scene.json``. One without any of WALLS has units only. Raises SceneError where it is bad.
-    """
-    path = _path_beside(source)
-    if not os.path.exists(path):
-        return None, None
-    values = _read(path)
-    walls = "periodic" if "half_period_y" in values else "box" if any(key in values for key in WALLS) else None
-    if walls == "periodic":
-        values["half_depth_y"] = values.pop("half_period_y")
-    if walls is None:
-        values.update(dict.fromkeys(WALLS, 1.0))  # a Scene wants them; the caller knows that there are none
-    return _complete(values, source, path), walls
-
-
-def _path_beside(source):
+def path_beside(source):
+    """Where the scene file of the dumps would be."""
     return os.path.join(source if os.path.isdir(source) else os.path.dirname(source), FILE_NAME)
 
 
-def _read(path):
+def read_values(path):
+    """Key -> value of a scene file; raises SceneError where it is damaged."""
     return read_object(path, f"the keys {', '.join(NUMBERS)}")
 
 
-def _complete(values, source, path):
+def complete_scene(values, source, path):
     """The Scene of what ``path`` and the command line gave; raises SceneError for a key that is missing or bad."""
     for key in NUMBERS:
-        if key not in values:
+        if key not in values and not (key == "half_depth_y" and PERIOD_KEY in values):
             where = f"in {path}" if os.path.exists(path) else f"(no {path})"
             raise SceneError(f"{source}: scene key '{key}' is missing {where}; "
                              f"add it there or give it on the command line")
@@ -146,4 +141,9 @@ def scene_of(values):
     unknown = ", ".join(f"'{key}'" for key in values if key not in KEYS)
     if unknown:
         raise SceneError(f"unknown scene key {unknown}; allowed are {', '.join(KEYS)}")
-    return Scene(**values)
+    if PERIOD_KEY not in values:
+        return Scene(**values)
+    if "half_depth_y" in values:
+        raise SceneError(f"scene: both 'half_depth_y' and '{PERIOD_KEY}' are given, but there are walls across y or a period")
+    values = dict(values)
+    return Scene(half_depth_y=values.pop(PERIOD_KEY), periodic_y=True, **values)

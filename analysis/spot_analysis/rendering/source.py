@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.errors import AnalysisError
 from ..reading.dump import read_frames
-from ..reading.scene import scene_beside
+from ..reading.scene_beside import scene_beside
 from ..reading.spots import read_spots
 
 SIZES = ("radius", "diameter")  # columns of a dump
@@ -45,19 +45,19 @@ class Run:
     def __init__(self, label, path, diameter=None, warn=warnings.warn):
         self.label = label
         self.path = path
-        self.scene, self._walls = scene_beside(path)
+        self.scene, self._is_box = scene_beside(path)
         self._diameter = self.scene.diameter if self.scene else diameter
         self._warn = warn
 
     @property
     def container(self):
         """Walls in units of d, None where no scene.json tells them."""
-        return self.scene.container() if self._walls else None
+        return self.scene.container() if self._is_box else None
 
     @property
     def has_front(self):
         """Whether there are walls at the front and at the back."""
-        return self._walls == "box"
+        return self._is_box and not self.scene.periodic_y
 
     def snapshots(self):
         """Grains of each snapshot in the order of time; raises DumpError."""

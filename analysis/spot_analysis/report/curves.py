@@ -67,6 +67,8 @@ def curves(run):
         "stagnant_boundary": Curve("z (d)", "|x| (d)", stagnation.boundaries),
         "drained_by_height": Curve("starting height (d)", "grains drained", mixing.drained),
     }
+    if run.scene.periodic_y:
+        del named["packing_across"], named["velocity_across"]
     named.update({f"residence_{level:g}d": Curve("residence time (tau)", "share (1/tau)", _residence(index))
                   for index, level in enumerate(residence.LEVELS)})
     named.update({f"velocity_{height:g}d": Curve("x (d)", "-v_z (d/tau)", _profile(index))

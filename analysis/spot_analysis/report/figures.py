@@ -15,7 +15,7 @@ from . import plots_counts, plots_flow, plots_history, plots_silo, plots_structu
 
 SECTIONS = {
     "The figures of 2006": {
-        "silos": (plots_silo.silos, "The layer of grains at the front wall, coloured by the height it started at "
+        "silos": (plots_silo.silos, "The layer of grains at the front wall, or around y = 0 in a silo that repeats along y, coloured by the height it started at "
                   f"(bands of {LAYER_HEIGHT:g} d)."),
         "velocity_profiles": (plots_flow.velocity_profiles, "Downward velocity across x, from displacements over 2 tau, "
                               "mean over the interval, and Gaussian fits."),

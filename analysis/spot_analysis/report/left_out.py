@@ -89,8 +89,12 @@ def _reach(view, concept, name):
     return f"the run ends at {last:g} tau" if last < end - TIME_TOLERANCE else None
 
 
+def _walls_across_y(view, concept, name):
+    return "the silo repeats along y, where no walls stand" if view.run.scene.periodic_y else None
+
+
 # By the names that the statistics have for them in NEEDS. What a need says comes before what the ones behind it say.
-NEEDS = {"stored": _stored, "grains": _grains, "pairs": _pairs, "height": _height, "outflow": _outflow, "structure": _structure, "core": _core,
+NEEDS = {"stored": _stored, "walls_across_y": _walls_across_y, "grains": _grains, "pairs": _pairs, "height": _height, "outflow": _outflow, "structure": _structure, "core": _core,
          "cells": _cells, "filled": _filled, "start": _start, "steady": _steady, "end": _end,
          "uncensored": _uncensored, "reach": _reach}
 

@@ -11,7 +11,7 @@ LATER_COLOUR = "0.7"  # of grains that were not there at the start
 
 
 def silos(views):
-    """The front layers of both silos at the last time that both have a picture of; None if there is none."""
+    """The layers of both silos at the last time that both have a picture of; None if there is none."""
     dem, spot = (view.run for view in views.values())
     shared = [(i, j) for i, t in enumerate(dem.picture_times) for j, s in enumerate(spot.picture_times)
               if abs(t - s) < 0.05]

@@ -112,7 +112,9 @@ def local_packing(views):
 
 
 def across_thickness(views):
-    """Packing fraction and velocity from wall to wall."""
+    """Packing fraction and velocity from wall to wall across y; None where there are none."""
+    if any(view.run.scene.periodic_y for view in views.values()):
+        return None
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2), constrained_layout=True)
     for name, view in views.items():
         left.plot(*thickness.fraction_profile(view), label=name, **line_style(name), linewidth=1.2)

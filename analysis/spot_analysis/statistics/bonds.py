@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..reading.container import nearest_image
 from .neighbours import close_pairs
 
 BOND_CUTOFF = 1.38  # d; first minimum of g(r) in 2006, and ours within the width of that minimum
@@ -27,12 +28,12 @@ class Bonds:
     directions: np.ndarray
 
 
-def find_bonds(positions, region, cutoff=BOND_CUTOFF):
-    """Bonds of the packing ``positions`` (n, 3) in and around ``region``."""
+def find_bonds(positions, region, cutoff=BOND_CUTOFF, period=None):
+    """Bonds of the packing ``positions`` (n, 3) in and around ``region``; period : of y, None where nothing repeats."""
     grains = np.flatnonzero(region.contains(positions, margin=2 * cutoff))
     near = positions[grains]
-    first, second = close_pairs(near, cutoff)
-    separation = near[second] - near[first]
+    first, second = close_pairs(near, cutoff, period)
+    separation = nearest_image(near[second] - near[first], period)
     length = np.sqrt((separation**2).sum(axis=1))
     return Bonds(grains, region.contains(near), first, second, separation / length[:, None])
 

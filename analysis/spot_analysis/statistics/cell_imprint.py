@@ -38,6 +38,8 @@ class Measurement:
     """Adds up snapshots of one or more runs for both axes and for several periods, of which EDGE is the cells' own."""
 
     def __init__(self, container, periods=(EDGE,)):
+        if container.periodic:
+            raise AnalysisError("the silo is periodic along y, but the imprint is looked for between walls there")
         self._region = bulk(container)
         self._periods = periods
         self._folds = {}

@@ -31,10 +31,10 @@ def residuals(places, values):
     return values - terms @ np.linalg.lstsq(terms, values, rcond=None)[0]
 
 
-def pair_sums(places, values):
+def pair_sums(places, values, period=None):
     """Pairs (k,) in each bin of EDGES and the sum of the products of their two ``values`` (k,); places (n, 3), values (n,)."""
     bins = len(EDGES) - 1
-    first, second, place = pairs_by_distance(places)
+    first, second, place = pairs_by_distance(places, period)
     return np.bincount(place, minlength=bins), np.bincount(place, values[first] * values[second], minlength=bins)
 
 
@@ -43,7 +43,7 @@ class Measurement:
     (P, k): sum of u u' over them; u in d/tau."""
 
     def __init__(self, container, region):
-        self._region = core(container, BOTTOM, TOP)
+        self._region, self._period = core(container, BOTTOM, TOP), container.period
         self._rows = []
 
     def add(self, snapshot, history):
@@ -57,7 +57,7 @@ class Measurement:
         if inside.sum() > 3:  # three grains lie on one plane
             middle, duration = middle[inside], snapshot.time - start.time
             u = residuals(middle, moved[inside, 0] / duration)
-            self._rows.append((start.time, snapshot.time, len(u), u @ u, *pair_sums(middle, u)))
+            self._rows.append((start.time, snapshot.time, len(u), u @ u, *pair_sums(middle, u, self._period)))
 
     def arrays(self):
         bins = len(EDGES) - 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pictures of the layer of grains at the front wall, y = -half_depth."""
+"""Pictures of the layer of grains at the front wall, y = -half_depth; where there is none, of that around y = 0."""
 
 import numpy as np
 
@@ -27,9 +27,11 @@ class FrontLayer:
             self._parts.append(self._layer(snapshot, first))
 
     def _layer(self, snapshot, first):
-        """x, z (PICTURE_QUANTUM) and starting layer of the grains at the wall y = -half_depth."""
-        positions = snapshot.positions
-        front = (positions[:, 1] < 1 - self._container.half_depth) & (positions[:, 2] > -1)
+        """x, z (PICTURE_QUANTUM) and starting layer of the grains of the layer, d thick."""
+        positions = self._container.in_period(snapshot.positions)
+        y = positions[:, 1]
+        inside = np.abs(y) < 0.5 if self._container.periodic else y < 1 - self._container.half_depth
+        front = inside & (positions[:, 2] > -1)
         place = first.index_of(snapshot.ids[front])
         layer = np.full(len(place), -1)
         layer[place >= 0] = np.maximum(first.positions[place[place >= 0], 2] / LAYER_HEIGHT, 0).astype(np.int64)

@@ -42,6 +42,9 @@ def common_times(dem, spot):
         if not math.isclose(getattr(one, name), getattr(other, name), rel_tol=1e-3):
             raise AnalysisError(f"the two runs have different containers: {name} is {getattr(one, name):g} d in DEM, "
                                 f"{getattr(other, name):g} d in spot")
+    if one.periodic != other.periodic:
+        raise AnalysisError(f"the two runs have different containers: along y {'DEM' if one.periodic else 'spot'} is periodic, and "
+                            "the other has walls")
     nearest = np.abs(dem.times[:, None] - spot.times).argmin(axis=1)
     matched = np.flatnonzero(np.abs(dem.times - spot.times[nearest]) <= TIME_TOLERANCE)
     if len(matched) < 2:

@@ -29,7 +29,7 @@ UPPER = np.triu_indices(SIZE)
 
 def core(container, bottom, top):
     """The Region in which fluctuations are measured, far from the walls."""
-    return Region(min(HALF_WIDTH, 0.6 * container.half_width), bottom, top, container.half_depth - WALL_LAYER)
+    return Region(min(HALF_WIDTH, 0.6 * container.half_width), bottom, top, container.depth_off_walls(WALL_LAYER))
 
 
 def inclination_terms(x, z):

@@ -103,7 +103,7 @@ class _Recorder:
             "above": flow.count_above(positions[:, 2], _levels_up_to(positions[:, 2].max(initial=0))),
             "outside": int(self._container.outside(positions).sum()),
             "largest_wall_overlap": float(self._container.wall_overlap(positions).max(initial=0)),
-            "largest_overlap": neighbours.largest_overlap(inside),
+            "largest_overlap": neighbours.largest_overlap(inside, self._container.period),
             "region_grains": int(self._region.contains(positions).sum()),
             "region_largest_overlap": math.nan,
             "contacts": math.nan,

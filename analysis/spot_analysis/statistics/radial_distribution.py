@@ -34,7 +34,7 @@ def rdf_counts(pairs, edges=RDF_EDGES):
 
 
 def slab_rdf(counts, grains, frames, region, container, edges=RDF_EDGES):
-    """g(r) between two walls.
+    """g(r) between two walls, or where the silo repeats.
 
     counts : (..., k) partners summed over grains and frames
     grains : (...) grains of the region summed over frames
@@ -44,7 +44,12 @@ def slab_rdf(counts, grains, frames, region, container, edges=RDF_EDGES):
     r <= T and 4 pi r^2 rho T/(2r) beyond (2010). T is the range of the centres, walls' distance less d, and rho
     the density over it: taking one from centres and the other from walls is off by d over the walls' distance.
     Grains stand in layers at the walls, not evenly, so g stays a few per cent below 1 for 3 d < r < T.
+    Without walls T is infinite, and rho that of the period.
     """
+    if container.periodic:
+        density = np.asarray(grains, dtype=float) / np.asarray(frames, dtype=float) / (region.area() * container.period)
+        expected = np.diff(4 * math.pi / 3 * np.asarray(edges)**3)
+        return np.asarray(counts) / (np.asarray(grains, dtype=float) * density)[..., None] / expected
     thickness = 2 * container.half_depth - 1
     density = np.asarray(grains, dtype=float) / np.asarray(frames, dtype=float) / (region.area() * thickness)
     expected = np.diff(_ideal_partners(np.asarray(edges), thickness))

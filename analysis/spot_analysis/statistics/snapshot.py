@@ -13,7 +13,7 @@ LAG_TAU = 2.0  # between the snapshots that velocities are taken from; the caden
 
 
 class Snapshot:
-    """time (tau); ids (n,) ascending; positions (n, 3) d; container, region: as in ``container``."""
+    """time (tau); ids (n,) ascending; positions (n, 3) d, in any period; container, region: as in ``container``."""
 
     def __init__(self, time, ids, positions, container, region):
         self.time = time
@@ -30,12 +30,12 @@ class Snapshot:
     @cached_property
     def pairs(self):
         """Pairs of the structure region within the range of g(r)."""
-        return neighbours.region_pairs(self.positions, self.region)
+        return neighbours.region_pairs(self.positions, self.region, period=self.container.period)
 
     @cached_property
     def bonds(self):
         """Bonds of the structure region."""
-        return find_bonds(self.positions, self.region)
+        return find_bonds(self.positions, self.region, period=self.container.period)
 
     def forget(self):
         """Free the pairs and bonds; they are made again when asked for."""

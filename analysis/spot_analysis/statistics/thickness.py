@@ -17,20 +17,22 @@ MEANING = {
     "packing_fraction_middle": "in the middle half of the thickness",
     "packing_wall_over_middle": "within 1 d of a wall over that",
 }
-NEEDS = {"*": ("structure", "pairs")}
+NEEDS = {"*": ("walls_across_y", "structure", "pairs")}
 
 
 class Measurement:
     """edges : (Y + 1,); times (T,), counts (T, Y): centres, 0 where the region is not full; start, end (P,), grains and
-    speeds (P, Y): grains and sums of their downward velocity."""
+    speeds (P, Y): grains and sums of their downward velocity. T and P are 0 where there are no walls across y."""
 
     def __init__(self, container, region):
-        self._region = region
+        self._region, self._walls = region, not container.periodic
         bins = max(int(round(2 * container.half_depth / BIN)), 2)
         self._edges = np.linspace(-1, 1, bins + 1) * container.half_depth
         self._counts, self._speeds = [], []
 
     def add(self, snapshot, history):
+        if not self._walls:
+            return
         bins = len(self._edges) - 1
         inside = self._region.contains(snapshot.positions) & snapshot.is_covered
         self._counts.append((snapshot.time, np.bincount(self._bins(snapshot.positions[inside]), minlength=bins)))
@@ -50,7 +52,7 @@ class Measurement:
 
     def arrays(self):
         bins = len(self._edges) - 1
-        times, counts = zip(*self._counts)
+        times, counts = zip(*self._counts) if self._counts else ((), np.empty((0, bins), dtype=np.int64))
         start, end, grains, speeds = list(zip(*self._speeds)) or [[], [], np.empty((0, bins), dtype=np.int64),
                                                                   np.empty((0, bins))]
         return {"edges": self._edges, "times": np.array(times), "counts": np.array(counts), "start": np.array(start),

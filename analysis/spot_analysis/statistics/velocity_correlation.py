@@ -10,10 +10,11 @@ over the pairs of grains r apart and over all grains. The sums that ``mean_flow`
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.spatial import cKDTree
 
+from ..reading.container import nearest_image
 from .fits import fit_exponential
 from .mean_flow import COVER, SIZE, UPPER, Step, about_mean_flow, core, triangles
+from .neighbours import close_pairs
 from .snapshot import LAG_TAU
 from .value import Value
 
@@ -28,22 +29,23 @@ MEANING = {
 NEEDS = {"*": ("pairs", "core")}
 
 
-def pairs_by_distance(places):
-    """first, second (p,): grains of the pairs whose distance lies in a bin of EDGES, and that bin (p,); places (n, 3)."""
-    first, second = cKDTree(places).query_pairs(EDGES[-1], output_type="ndarray").T
-    distance = np.sqrt(((places[first] - places[second])**2).sum(axis=1))
+def pairs_by_distance(places, period=None):
+    """first, second (p,): grains of the pairs whose distance lies in a bin of EDGES, and that bin (p,); places (n, 3); period : of
+    y, None where nothing repeats."""
+    first, second = close_pairs(places, EDGES[-1], period)
+    distance = np.sqrt((nearest_image(places[first] - places[second], period)**2).sum(axis=1))
     place = np.searchsorted(EDGES, distance, side="right") - 1
     kept = (place >= 0) & (place < len(EDGES) - 1)
     return first[kept], second[kept], place[kept]
 
 
-def frame_sums(middle, w):
+def frame_sums(middle, w, period=None):
     """Sums over the grains of a region: grains (), their moments (u,), pairs (k,), moments of pairs (k, u).
 
     middle : (n, 3); w : (n, SIZE) of ``mean_flow.Step``; k runs over the bins of EDGES, u over the triangle of w w^T
     """
     count, bins = len(middle), len(EDGES) - 1
-    first, second, place = pairs_by_distance(middle)
+    first, second, place = pairs_by_distance(middle, period)
     partners = csr_matrix((np.ones(len(first)), (place * count + first, second)), shape=(bins * count, count)) @ w
     joint = np.einsum("nk,bnl->bkl", w, partners.reshape(bins, count, SIZE))
     return count, triangles(w.T @ w), np.bincount(place, minlength=bins), triangles(joint)
@@ -54,7 +56,7 @@ class Measurement:
     pair_moments (P, k, u)."""
 
     def __init__(self, container, region):
-        self._region = core(container, BOTTOM, TOP)
+        self._region, self._period = core(container, BOTTOM, TOP), container.period
         self._rows = []
 
     def add(self, snapshot, history):
@@ -63,7 +65,8 @@ class Measurement:
             return
         step = Step(start, snapshot, self._region)
         if step.inside.sum() > 1:
-            self._rows.append((step.start, step.end, *frame_sums(step.middle[step.inside], step.w[step.inside])))
+            self._rows.append((step.start, step.end,
+                               *frame_sums(step.middle[step.inside], step.w[step.inside], self._period)))
 
     def arrays(self):
         bins, size = len(EDGES) - 1, len(UPPER[0])

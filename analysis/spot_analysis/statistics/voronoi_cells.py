@@ -71,9 +71,17 @@ def _unit(vectors):
 
 
 def with_mirror_images(points, container, reach=MIRRORED):
-    """The points (n, 3), followed by their images in walls and base closer than ``reach``, images of images too."""
-    for axis, wall in ((0, container.half_width), (0, -container.half_width),
-                       (1, container.half_depth), (1, -container.half_depth), (2, 0.0)):
+    """The points (n, 3), followed by their images in walls and base closer than ``reach``, images of images too.
+
+    Where the silo repeats, the points have to be in one period, and have images in the next ones.
+    """
+    walls = [(0, container.half_width), (0, -container.half_width), (2, 0.0)]
+    if container.periodic:
+        next_ones = [points[side * points[:, 1] > container.half_depth - reach] - [0, side * container.period, 0] for side in (-1, 1)]
+        points = np.vstack([points, *next_ones])
+    else:
+        walls[2:2] = [(1, container.half_depth), (1, -container.half_depth)]
+    for axis, wall in walls:
         near = np.abs(points[:, axis] - wall) < reach
         if axis == 2:
             near &= (points[:, 2] > 0) & (np.hypot(points[:, 0], points[:, 1]) > container.orifice_radius)
@@ -85,7 +93,7 @@ def with_mirror_images(points, container, reach=MIRRORED):
 
 def cells_in_container(positions, container):
     """Volume of the cell of each grain (n,), d^3, cut off by walls and base; infinite at the free surface."""
-    return _first_cells(with_mirror_images(positions, container), len(positions))
+    return _first_cells(with_mirror_images(container.in_period(positions), container), len(positions))
 
 
 def cells_without_walls(positions):

@@ -79,8 +79,7 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
                                    ", the reach of newborn spots, and not above the orifice, ", base));
 }
 
-double Drainage::weigh(const Move& move, int enclosed, Spots& spots) {
-  const Spots::Carried carried = spots.carry(move, enclosed, container());
+double Drainage::weigh(const Move& move, int enclosed, const Spots::Carried& carried) {
   counters_.volume_left += carried.left;
   return fixed_volume_weight(spots_, move.middle.z() - limits().outlet, enclosed, carried.volume);
 }
@@ -111,7 +110,8 @@ void Drainage::add_drained(const std::vector<Grain>& grains) {
 }
 
 void Drainage::require_inside() const {
-  visit_grains([&](const Grain& grain) { checks_.require_inside(grain); });
+  const auto require = [&](const Grain& grain) { checks_.require_inside(grain); };
+  container().concurrent() ? visit_grains_at_once(require) : visit_grains(require);
 }
 
 void Drainage::replace_container(std::shared_ptr<const Container> container) {

@@ -75,7 +75,7 @@ void GrainChecks::require_left_through_orifice(const std::vector<Grain>& drained
     const Vector3& centre = grain.position;
     if (container_->may_have_left_to(centre)) continue;
     throw CollapsedPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
-                                   ") left through the base, beside the ", container_->outlets().nearest(centre).name(),
+                                   ") left through the base, beside the ", container_->nearest_outlet(centre).name(),
                                    ": relax more, or let spots displace less at a time"));
   }
 }

@@ -91,8 +91,10 @@ void TimeOrderedDrainage::carry_out(Move move) {
   packing_.refresh(container());
   const double reach = spot_parameters().radius + relaxation_parameters().shell * packing_.diameter();
   packing_.find_movable(move.middle, reach, near_);
-  if (spot_parameters().fixed_volume > 0.0)
-    move.weight = weigh(move, enclosed_volume(packing_, near_, move, spot_parameters()), spots_);
+  if (spot_parameters().fixed_volume > 0.0) {
+    const int enclosed = enclosed_volume(packing_, near_, move, spot_parameters());
+    move.weight = weigh(move, enclosed, spots_.carry(move, enclosed, container()));
+  }
   const int enclosed = displace(packing_, near_, move, spot_parameters(), received());
   count_move(enclosed);
   if (enclosed == 0) {

@@ -108,7 +108,7 @@ void WindowedDrainage::advance_to(double time) {
   const double end = time + std::min(1e-12 * time, 0.5 * window_);
   while (static_cast<double>(windows_ + 1) * window_ <= end) {
     const double now = static_cast<double>(windows_) * window_, until = static_cast<double>(++windows_) * window_;
-    spots_.set_relative_speeds(now, *communicator_);
+    spots_.set_relative_speeds(now, *communicator_, *workers_);
     spots_.give_birth(until, container(), [this](const Spot& spot) { return here(spot); });
     spots_.update_surface(now, visit_positions(), *communicator_);
     step_to(until);
@@ -123,7 +123,7 @@ void WindowedDrainage::advance_to(double time) {
 
 void WindowedDrainage::step_to(double until) {
   moves_.clear();
-  spots_.step_until(until, container(),
+  spots_.step_until(until, container(), *workers_,
                     [this](const Spot& spot, const std::vector<Move>& moves) { moves_.add(moves, owner(spot)); });
   if (communicator_->size() == 1) return;
   const auto leaving = spots_.take_out_others([this](const Spot& spot) { return here(spot); });
@@ -142,11 +142,34 @@ void WindowedDrainage::displace() {
 /// `enclosed`: volume of this rank's grains in each move.
 void WindowedDrainage::weigh(const std::vector<int>& enclosed, std::vector<Move>& moves) {
   moves_.sum_enclosed(enclosed);
-  for (SharedMove& shared : moves_.all())
-    if (moves_.own(shared)) shared.move.weight = Drainage::weigh(shared.move, shared.enclosed, spots_);
+  carry();
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    SharedMove& shared = moves_.all()[k];
+    if (!moves_.own(shared)) continue;
+    shared.move.weight = Drainage::weigh(shared.move, shared.enclosed, carried_[k]);
+    spots_.add_to_flow(shared.move, carried_[k].volume);
+  }
   spots_.update_flow(window_, *communicator_);
   if (spot_parameters().fixed_volume > 0.0) moves_.send_weights([this](const Move& move) { return reached(move); });
   for (std::size_t k = 0; k < moves.size(); ++k) moves[k].weight = moves_.all()[k].move.weight;
+}
+
+/// The moves of a spot follow each other, and one worker does all of them.
+void WindowedDrainage::carry() {
+  const std::vector<SharedMove>& all = moves_.all();
+  carried_.assign(all.size(), {});
+  const auto end_of_spot = [&](std::size_t k) {
+    while (k > 0 && k < all.size() && all[k].move.spot == all[k - 1].move.spot) ++k;
+    return k;
+  };
+  const auto carry_some = [&](int, std::size_t first, std::size_t last) {
+    for (std::size_t k = end_of_spot(first), end = end_of_spot(last); k < end; ++k)
+      if (moves_.own(all[k])) carried_[k] = spots_.exchange(all[k].move, all[k].enclosed, container());
+  };
+  if (container().concurrent())
+    workers_->share_out(all.size(), carry_some);
+  else
+    carry_some(0, 0, all.size());
 }
 
 /// Spots that are inside and enclose nothing have come out at the top.
@@ -160,7 +183,7 @@ void WindowedDrainage::remove_spots_above() {
 }
 
 std::size_t WindowedDrainage::memory() const {
-  return packing_.memory() + relaxation_.memory() + spots_.memory() + moves_.memory() + bytes_in(displacing_);
+  return packing_.memory() + relaxation_.memory() + spots_.memory() + moves_.memory() + bytes_in(displacing_, carried_);
 }
 
 void WindowedDrainage::take_out_drained() {

@@ -29,6 +29,14 @@ bool Container::is_over_outlet(const Vector3& place, double margin) const {
   });
 }
 
+const Outlet& Container::nearest_outlet(const Vector3& place) const {
+  const auto distance = [&](const Outlet& outlet) {
+    return outlet.distance(outlet.centre + periodic().nearest(Vector3(place - outlet.centre)));
+  };
+  return *std::min_element(outlets().begin(), outlets().end(),
+                           [&](const Outlet& a, const Outlet& b) { return distance(a) < distance(b); });
+}
+
 void Container::require_entrance(double spot_radius) const {
   for (const Outlet& outlet : outlets())
     if (outlet.hole->widest_radius() < spot_radius)

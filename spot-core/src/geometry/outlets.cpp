@@ -32,6 +32,20 @@ Outlets::Outlets(std::vector<Outlet> all) : all_(std::move(all)) {
                                        " overlap, or the rectangles around them do: move them apart along x or y"));
 }
 
+Outlets Outlets::repeated(const Periodic& periodic) const {
+  Outlets repeated = *this;
+  for (Outlet& outlet : repeated.all_)
+    for (int axis = 0; axis < 2; ++axis) {
+      const double period = periodic.length(axis);
+      if (!periodic.along(axis) || std::abs(2.0 * outlet.hole->half_width(axis) - period) > 1e-9 * period) continue;
+      if (const auto endless = outlet.hole->without_ends(axis)) {
+        outlet.hole = endless;
+        outlet.centre[axis] = 0.5 * (periodic.low(axis) + periodic.high(axis));
+      }
+    }
+  return repeated;
+}
+
 const Outlet& Outlets::nearest(const Vector3& place) const {
   if (all_.size() == 1) return all_.front();
   return *std::min_element(all_.begin(), all_.end(),

@@ -2,6 +2,7 @@
 #include "spot/geometry/silos.hpp"
 
 #include <cmath>
+#include <string>
 
 #include "spot/base/errors.hpp"
 #include "spot/geometry/base_plate.hpp"
@@ -24,29 +25,55 @@ void require_room(const char* axis, double low, double high, double buffer) {
                                    " from each need at least ", 2.0 * buffer));
 }
 
+/// One exactly as wide as the silo is allowed, whatever the rounding.
+void require_base_around(const Outlet& outlet, const std::optional<Interval> (&walls)[2]) {
+  const double slack = 1e-9 * outlet.hole->widest_radius();
+  std::string base;
+  bool inside = true;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!walls[axis]) continue;
+    const auto [low, high] = *walls[axis];
+    const double half = outlet.hole->half_width(axis);
+    inside = inside && outlet.centre[axis] - half >= low - slack && outlet.centre[axis] + half <= high + slack;
+    base += message(", ", axis == 0 ? "x" : "y", " from ", low, " to ", high);
+  }
+  if (!inside) throw InvalidContainer(message(outlet.name(), " is wider than the base", base));
+}
+
 }  // namespace
 
 std::unique_ptr<WalledContainer> box_silo(double x_low, double x_high, double y_low, double y_high,
                                           const Outlets& outlets, const SpotBuffers& buffers) {
-  require_order("x", x_low, x_high);
-  require_order("y", y_low, y_high);
-  require_room("x", x_low, x_high, buffers.side);
-  require_room("y", y_low, y_high, buffers.side);
-  for (const Outlet& outlet : outlets) {
-    const Vector3 half(outlet.hole->half_width(0), outlet.hole->half_width(1), 0.0);
-    const Vector3 low = outlet.centre - half, high = outlet.centre + half;
-    // One exactly as wide as the silo is allowed, whatever the rounding.
-    const double slack = 1e-9 * outlet.hole->widest_radius();
-    if (low.x() < x_low - slack || high.x() > x_high + slack || low.y() < y_low - slack || high.y() > y_high + slack)
-      throw InvalidContainer(message(outlet.name(), " is wider than the base, x from ", x_low, " to ", x_high,
-                                     ", y from ", y_low, " to ", y_high));
+  return box_silo(Interval{x_low, x_high}, Interval{y_low, y_high}, {}, outlets, buffers);
+}
+
+std::unique_ptr<WalledContainer> box_silo(const std::optional<Interval>& x, const std::optional<Interval>& y,
+                                          const Periodic& periodic, const Outlets& given, const SpotBuffers& buffers) {
+  const std::optional<Interval> walls[] = {x, y};
+  const Outlets outlets = given.repeated(periodic);
+  for (int axis = 0; axis < 2; ++axis) {
+    const char* name = axis == 0 ? "x" : "y";
+    if (walls[axis]) {
+      require_order(name, walls[axis]->low, walls[axis]->high);
+      require_room(name, walls[axis]->low, walls[axis]->high, buffers.side);
+    } else if (!periodic.along(axis)) {
+      throw InvalidContainer(message("there are no walls along ", name, ", where space does not repeat"));
+    }
   }
+  for (const Outlet& outlet : outlets) require_base_around(outlet, walls);
   auto silo = std::make_unique<WalledContainer>(outlets);
   silo->add(std::make_unique<BasePlate>(outlets), buffers.base);
-  silo->add(std::make_unique<PlaneWall>(Vector3(x_low, 0, 0), Vector3(1, 0, 0)), buffers.side);
-  silo->add(std::make_unique<PlaneWall>(Vector3(x_high, 0, 0), Vector3(-1, 0, 0)), buffers.side);
-  silo->add(std::make_unique<PlaneWall>(Vector3(0, y_low, 0), Vector3(0, 1, 0)), buffers.side);
-  silo->add(std::make_unique<PlaneWall>(Vector3(0, y_high, 0), Vector3(0, -1, 0)), buffers.side);
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!walls[axis]) continue;
+    const auto along = [axis](double length) {
+      Vector3 vector = Vector3::Zero();
+      vector[axis] = length;
+      return vector;
+    };
+    silo->add(std::make_unique<PlaneWall>(along(walls[axis]->low), along(1.0)), buffers.side);
+    silo->add(std::make_unique<PlaneWall>(along(walls[axis]->high), along(-1.0)), buffers.side);
+  }
+  silo->repeat(periodic);
   return silo;
 }
 

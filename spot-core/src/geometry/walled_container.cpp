@@ -45,11 +45,14 @@ void WalledContainer::require_no_period_across(const AxisPlane& plane) const {
 
 void WalledContainer::repeat(const Periodic& periodic) {
   for (const Outlet& outlet : outlets_)
-    for (int axis = 0; axis < 2; ++axis)
-      if (outlet.centre[axis] - outlet.hole->half_width(axis) < periodic.low(axis) ||
-          outlet.centre[axis] + outlet.hole->half_width(axis) > periodic.high(axis))
+    for (int axis = 0; axis < 2; ++axis) {
+      const double half = outlet.hole->half_width(axis),
+                   slack = periodic.along(axis) ? 1e-9 * periodic.length(axis) : 0.0;
+      if (outlet.centre[axis] - half < periodic.low(axis) - slack ||
+          outlet.centre[axis] + half > periodic.high(axis) + slack)
         throw InvalidContainer(message(outlet.name(), " reaches out of the cell that repeats, along ", "xy"[axis],
                                        " from ", periodic.low(axis), " to ", periodic.high(axis)));
+    }
   periodic_ = periodic;
   for (const AxisPlane& plane : axis_planes_) require_no_period_across(plane);
 }

@@ -45,18 +45,13 @@ double BlockMoves::reach(double radius, const CellLattice& lattice) {
 
 // ---- where moves are, and what they reach
 
-/// Shares the own layers out among the workers, by how many cells the moves of the last window reached in each: most
-/// grains then stay with the same processor, whose memory is near.
+/// Shares the rows of the own layers out among the workers, to each the same ones in all windows: most grains then stay
+/// with the same processor, whose memory is near.
 void BlockMoves::set_parts(int workers) {
-  const auto own = static_cast<std::size_t>(cells_.own_layers());
-  if (cells_reached_.size() != own) cells_reached_.assign(own, 1);  // the layers have been shared out anew
-  const Slabs slabs(cells_reached_, workers);
+  const int first = cells_.first_own_layer(), last = first + cells_.own_layers();
   parts_.resize(static_cast<std::size_t>(workers));
-  for (int worker = 0; worker < workers; ++worker) {
-    parts_[static_cast<std::size_t>(worker)].first_layer = cells_.first_own_layer() + slabs.first(worker);
-    parts_[static_cast<std::size_t>(worker)].last_layer = cells_.first_own_layer() + slabs.first(worker + 1);
-  }
-  std::fill(cells_reached_.begin(), cells_reached_.end(), 1);
+  for (int worker = 0; worker < workers; ++worker)
+    parts_[static_cast<std::size_t>(worker)].asked = {first, last, false, worker, workers};
 }
 
 const std::vector<int>& BlockMoves::find(const std::vector<Move>& moves, const SpotParameters& spots, Workers& workers,
@@ -75,10 +70,11 @@ const std::vector<int>& BlockMoves::find(const std::vector<Move>& moves, const S
     count_enclosed(part);
     if (motion.on()) update_tilts(part, motion);
   });
-  for (std::size_t layer = 0; layer < work.size(); ++layer) work[layer] += cells_reached_[layer];
   enclosed_.assign(moves.size(), 0);
-  for (const Part& part : parts_)
+  for (const Part& part : parts_) {
+    for (std::size_t layer = 0; layer < work.size(); ++layer) work[layer] += part.work[layer];
     for (std::size_t m = 0; m < moves.size(); ++m) enclosed_[m] += part.enclosed[m];
+  }
   return enclosed_;
 }
 
@@ -96,7 +92,7 @@ void BlockMoves::find_rows_of_images(Part& part, const Vector3& middle, double r
       for (int axis = 0; axis < 2; ++axis)
         if (periodic.along(axis))
           reaches = reaches && image[axis] + reach >= 0.0 && image[axis] - reach <= periodic.length(axis);
-      if (reaches) lattice.find_rows(image, reach, part.first_layer, part.last_layer, false, part.rows);
+      if (reaches) lattice.find_rows(image, reach, part.asked, part.rows);
       part.shifts.resize(part.rows.size(), lattice.periods(x, y));
     }
 }
@@ -134,7 +130,8 @@ void BlockMoves::find_rows(Part& part, const std::vector<Move>& moves, double ra
   part.rows.clear();
   part.shifts.clear();
   part.end_of_rows.clear();
-  const auto layers = static_cast<std::uint32_t>(part.last_layer - part.first_layer);
+  const auto layers = static_cast<std::size_t>(cells_.own_layers());
+  part.work.assign(layers, 0);
   part.reached.assign(layers * (lattice.cells_in_layer() / lattice.cells_in_row()), {cells_.count(), 0});
   for (const Move& move : moves) {
     const std::size_t before = part.rows.size();
@@ -142,15 +139,15 @@ void BlockMoves::find_rows(Part& part, const std::vector<Move>& moves, double ra
     if (lattice.periodic().any())
       find_rows_of_images(part, from_low, reach);
     else
-      lattice.find_rows(from_low, reach, part.first_layer, part.last_layer, false, part.rows);
+      lattice.find_rows(from_low, reach, part.asked, part.rows);
     part.end_of_rows.push_back(part.rows.size());
     for (std::size_t r = before; r < part.rows.size(); ++r) add_reached(part, part.rows[r]);
   }
 }
 
 void BlockMoves::add_reached(Part& part, const CellRow& row) const {
-  const CellLattice& lattice = cells_.lattice();
-  CellRow& reached = part.reached[(row.first - lattice.first_cell_of(part.first_layer)) / lattice.cells_in_row()];
+  part.work[cells_.layer_of(row.first)] += row.last - row.first;
+  CellRow& reached = part.reached[(row.first - cells_.first_own()) / cells_.lattice().cells_in_row()];
   reached = {std::min(reached.first, row.first), std::max(reached.last, row.last)};
 }
 
@@ -293,9 +290,9 @@ void BlockMoves::write_back(Workers& workers) {
 }
 
 std::size_t BlockMoves::memory() const {
-  std::size_t bytes = bytes_in(lengths_, parts_, cells_reached_, middles_, steps_, enclosed_, received_);
+  std::size_t bytes = bytes_in(lengths_, parts_, middles_, steps_, enclosed_, received_);
   for (const Part& part : parts_)
-    bytes += bytes_in(part.rows, part.shifts, part.end_of_rows, part.reached, part.enclosed);
+    bytes += bytes_in(part.rows, part.shifts, part.end_of_rows, part.reached, part.blocks, part.enclosed, part.work);
   return bytes;
 }
 

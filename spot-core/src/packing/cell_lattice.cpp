@@ -170,14 +170,16 @@ struct RepeatingAxis {
 }  // namespace
 
 template <typename X, typename Y>
-void CellLattice::find_rows(const Vector3& at, double reach, int first, int last, const X& along_x, const Y& along_y,
+void CellLattice::find_rows(const Vector3& at, double reach, const RowsAsked& asked, const X& along_x, const Y& along_y,
                             std::vector<CellRow>& rows) const {
   const OpenAxis along_z = {edge_[2], per_edge_[2], n_[2]};
-  const int z0 = std::max(first, along_z.cell(at.z() - reach)), z1 = std::min(last - 1, along_z.cell(at.z() + reach));
+  const int z0 = std::max(asked.first_layer, along_z.cell(at.z() - reach));
+  const int z1 = std::min(asked.last_layer - 1, along_z.cell(at.z() + reach));
   const int y0 = along_y.cell(at.y() - reach), y1 = along_y.cell(at.y() + reach);
   for (int iz = z0; iz <= z1; ++iz) {
     const double in_layer = square(reach) - square(along_z.gap(at.z(), iz));
     for (int iy = y0; iy <= y1; ++iy) {
+      if (!asked.contain(iy, iz)) continue;
       const double in_row = in_layer - square(along_y.gap(at.y(), iy));
       if (in_row < 0.0) continue;
       const double half = std::sqrt(in_row);
@@ -188,19 +190,19 @@ void CellLattice::find_rows(const Vector3& at, double reach, int first, int last
   }
 }
 
-void CellLattice::find_rows(const Vector3& from_low, double reach, int first, int last, bool with_images,
+void CellLattice::find_rows(const Vector3& from_low, double reach, const RowsAsked& asked,
                             std::vector<CellRow>& rows) const {
   const OpenAxis x = {edge_[0], per_edge_[0], n_[0]}, y = {edge_[1], per_edge_[1], n_[1]};
-  const RepeatingAxis around_x = {x, periodic_.length(0), with_images},
-                      around_y = {y, periodic_.length(1), with_images};
+  const RepeatingAxis around_x = {x, periodic_.length(0), asked.with_images},
+                      around_y = {y, periodic_.length(1), asked.with_images};
   if (images_[0] == 0 && images_[1] == 0)
-    find_rows(from_low, reach, first, last, x, y, rows);
+    find_rows(from_low, reach, asked, x, y, rows);
   else if (images_[0] == 0)
-    find_rows(from_low, reach, first, last, x, around_y, rows);
+    find_rows(from_low, reach, asked, x, around_y, rows);
   else if (images_[1] == 0)
-    find_rows(from_low, reach, first, last, around_x, y, rows);
+    find_rows(from_low, reach, asked, around_x, y, rows);
   else
-    find_rows(from_low, reach, first, last, around_x, around_y, rows);
+    find_rows(from_low, reach, asked, around_x, around_y, rows);
 }
 
 }  // namespace spot

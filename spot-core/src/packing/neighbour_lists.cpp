@@ -38,66 +38,91 @@ void NeighbourLists::list(std::uint32_t slot, const Container& container) {
   findings_.resize(std::max<std::size_t>(findings_.size(), 1));
   Finding& finding = findings_[0];
   finding.clear();
-  find_neighbours(slot, finding);
-  list(slot, finding.found.data(), finding.ends[0], container);
+  anew_[slot] = 1;
+  list(slot, finding);
+  write_down(finding);
+  anew_[slot] = 0;
+  if (cells_.own(cells_.cell_of(slot))) walls_.mark(slot, walls_.mark_of(slot, container));
 }
 
 void NeighbourLists::list(const std::vector<Place>& places, const Container& container, Workers& workers) {
-  if (places.empty()) return;
-  const std::size_t n = places.size(), tasks = static_cast<std::size_t>(workers.size());
-  findings_.resize(tasks);
-  workers.run([&](int worker) {
-    const auto w = static_cast<std::size_t>(worker);
-    Finding& finding = findings_[w];
-    finding.clear();
-    for (std::size_t k = n * w / tasks; k < n * (w + 1) / tasks; ++k) find_neighbours(cells_.slot(places[k]), finding);
-  });
-  std::size_t k = 0;
-  for (const Finding& finding : findings_) {
-    std::size_t first = 0;
-    for (const std::size_t end : finding.ends) {
-      list(cells_.slot(places[k++]), finding.found.data() + first, end - first, container);
-      first = end;
+  findings_.resize(static_cast<std::size_t>(workers.size()));
+  for (Finding& finding : findings_) finding.clear();
+  for (const Place& place : places) anew_[cells_.slot(place)] = 1;
+  const auto mark_of = [&](std::uint32_t slot) {
+    return cells_.own(cells_.cell_of(slot)) ? walls_.mark_of(slot, container) : std::uint8_t{0};
+  };
+  workers.share_out(places.size(), [&](int worker, std::size_t first, std::size_t last) {
+    Finding& finding = findings_[static_cast<std::size_t>(worker)];
+    for (std::size_t k = first; k < last; ++k) {
+      const std::uint32_t slot = cells_.slot(places[k]);
+      list(slot, finding);
+      if (container.concurrent()) finding.marks.push_back(mark_of(slot));
     }
+  });
+  auto place = places.begin();
+  for (const Finding& finding : findings_) {
+    write_down(finding);
+    for (const std::uint8_t mark : finding.marks) walls_.mark(cells_.slot(*place++), mark);
   }
+  for (; place != places.end(); ++place) walls_.mark(cells_.slot(*place), mark_of(cells_.slot(*place)));
+  for (const Place& listed : places) anew_[cells_.slot(listed)] = 0;
 }
 
-/// Adds the slots of all other grains with references near this one's.
+/// Finds the slots of all other grains with references near this one's.
 void NeighbourLists::find_neighbours(std::uint32_t slot, Finding& finding) const {
+  // More than what single precision rounds: so who finds a neighbour is found by it.
+  constexpr double rounded = 1.0 + 1e-6;
   const CellLattice& lattice = cells_.lattice();
   const double reach = lattice.diameter() + lattice.skin();
   const auto reach_squared = static_cast<float>(square(reach / lattice.quantum().length()));
   Point centre = cells_.references[slot];
   finding.rows.clear();
-  lattice.find_rows(cells_.from_low(centre, cells_.cell_of(slot)), reach, lattice.first_layer(), lattice.last_layer(),
-                    true, finding.rows);
+  lattice.find_rows(cells_.from_low(centre, cells_.cell_of(slot)), rounded * reach,
+                    {lattice.first_layer(), lattice.last_layer(), true}, finding.rows);
   centre.state = Point::free;
-  std::size_t end = finding.ends.empty() ? 0 : finding.ends.back();
-  const auto before = static_cast<std::ptrdiff_t>(end);
+  std::size_t end = 0;
   for (const CellRow& row : finding.rows) {
     const std::uint32_t first = cells_.first_slot(row.first), n = cells_.first_slot(row.last) - first;
     if (finding.found.size() < end + n) finding.found.resize(end + n);
     end += kernels_.find_within(cells_.references.data() + first, n, centre, reach_squared, first,
                                 finding.found.data() + end);
   }
-  const auto own = finding.found.begin() + before, last = finding.found.begin() + static_cast<std::ptrdiff_t>(end);
-  finding.ends.push_back(static_cast<std::size_t>(std::remove(own, last, slot) - finding.found.begin()));
+  finding.found.resize(end);
+  finding.found.erase(std::remove(finding.found.begin(), finding.found.end(), slot), finding.found.end());
 }
 
-/// Makes `found` a grain's neighbours, and brings their lists up to date. Most stay the same.
-void NeighbourLists::list(std::uint32_t slot, const std::uint32_t* found, std::size_t n, const Container& container) {
-  for (const std::uint32_t j : of(slot)) marks_[j] = 1;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (marks_[found[k]] == 0) add_neighbour(found[k], slot);
-    marks_[found[k]] = 0;
+/// Adds in which lists of other grains this one is no more, and in which it has to be. Those listed anew see to theirs
+/// themselves.
+void NeighbourLists::find_changes(std::uint32_t slot, Finding& finding) const {
+  const Neighbours before = of(slot);
+  const auto& now = finding.found;
+  for (const std::uint32_t j : before)
+    if (anew_[j] == 0 && std::find(now.begin(), now.end(), j) == now.end()) finding.gone.push_back({j, slot});
+  for (const std::uint32_t j : now)
+    if (anew_[j] == 0 && std::find(before.begin(), before.end(), j) == before.end()) finding.come.push_back({j, slot});
+}
+
+/// Lists of different grains may be written at the same time, if there is room in them.
+void NeighbourLists::list(std::uint32_t slot, Finding& finding) {
+  find_neighbours(slot, finding);
+  find_changes(slot, finding);
+  if (finding.found.size() <= entries(room_[slot])) {
+    std::copy(finding.found.begin(), finding.found.end(), list_of(slot));
+    size_[slot] = static_cast<std::uint8_t>(finding.found.size());
+  } else {
+    finding.crowded.push_back(slot);
+    finding.crowds.push_back(finding.found);
   }
-  for (const std::uint32_t j : of(slot)) {  // again, since lists may have moved
-    if (marks_[j] != 0) remove_neighbour(j, slot);
-    marks_[j] = 0;
+}
+
+void NeighbourLists::write_down(const Finding& finding) {
+  for (const auto& [slot, neighbour] : finding.gone) remove_neighbour(slot, neighbour);
+  for (const auto& [slot, neighbour] : finding.come) add_neighbour(slot, neighbour);
+  for (std::size_t k = 0; k < finding.crowded.size(); ++k) {
+    size_[finding.crowded[k]] = 0;
+    for (const std::uint32_t neighbour : finding.crowds[k]) add_neighbour(finding.crowded[k], neighbour);
   }
-  size_[slot] = 0;
-  for (std::size_t k = 0; k < n; ++k) add_neighbour(slot, found[k]);
-  if (cells_.own(cells_.cell_of(slot))) walls_.mark(slot, container);
 }
 
 void NeighbourLists::unlist(std::uint32_t slot) {
@@ -158,7 +183,7 @@ void NeighbourLists::renumber(const std::vector<std::uint32_t>& now, std::size_t
   block_.assign(slots, 0);
   room_.assign(slots, 0);
   size_.assign(slots, 0);
-  marks_.assign(slots, 0);
+  anew_.assign(slots, 0);
   for (auto& unused : unused_) unused.clear();
   for (std::size_t slot = 0; slot < now.size(); ++slot) {
     const std::uint32_t* old = neighbours.data() + static_cast<std::size_t>(block[slot]) * kernels::lanes;
@@ -167,9 +192,10 @@ void NeighbourLists::renumber(const std::vector<std::uint32_t>& now, std::size_t
 }
 
 std::size_t NeighbourLists::memory() const {
-  std::size_t bytes = bytes_in(neighbours_, block_, room_, size_, marks_, findings_);
+  std::size_t bytes = bytes_in(neighbours_, block_, room_, size_, anew_, findings_);
   for (const auto& unused : unused_) bytes += bytes_in(unused);
-  for (const Finding& finding : findings_) bytes += bytes_in(finding.found, finding.ends, finding.rows);
+  for (const Finding& finding : findings_)
+    bytes += bytes_in(finding.found, finding.rows, finding.marks, finding.gone, finding.come);
   return bytes;
 }
 

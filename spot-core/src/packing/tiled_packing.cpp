@@ -121,32 +121,40 @@ void TiledPacking::list_all(const Container& container) {
 }
 
 void TiledPacking::update_lists(const Container& container, Workers& workers) {
-  find_drifted();
+  find_drifted(workers);
   lists_.list(drifted_, container, workers);
   drifted_.clear();
   if (communicator_->size() > 1) ghosts_.exchange_migrants(container);
   ghosts_.exchange(container);
 }
 
-/// Puts grains that are too far from their references into the cells where they are now, and into drifted_.
-void TiledPacking::find_drifted() {
+/// Puts grains that are too far from their references into the cells where they are now, and into drifted_. Workers
+/// find them, and one of them moves their references.
+void TiledPacking::find_drifted(Workers& workers) {
   const auto allowed = static_cast<std::int32_t>(lists_.largest_drift() / quantum().length());
   const double kept = part_of_half_skin * allowed;
   const std::uint32_t first_own = cells_.first_own(), owned = cells_.last_own() - first_own;
   found_.resize(owned);
   const std::size_t n = kernels_.find_reached(cells_.drift.data() + first_own, owned, allowed, found_.data());
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::uint32_t cell = first_own + found_[k], first = cells_.first_slot(cell);
+  const auto find_in = [&](std::uint32_t cell, std::vector<Place>& far) {
     if (between_moves_) moves_.write_back(cell);
+    const std::uint32_t first = cells_.first_slot(cell);
     const double squared = kernels_.farthest(cells_.points.data() + first, cells_.references.data() + first,
                                              cells_.end_slot(cell) - first);
     if (squared > kept * kept)
       for (Place place{cell, 0}; cells_.slot(place) < cells_.end_slot(cell); ++place.in_cell) {
         const std::uint32_t slot = cells_.slot(place);
-        if (squared_distance(cells_.points[slot], cells_.references[slot]) > kept * kept) move_reference(place);
+        if (squared_distance(cells_.points[slot], cells_.references[slot]) > kept * kept) far.push_back(place);
       }
     cells_.drift[cell] = static_cast<std::int32_t>(std::min(1.001 * std::sqrt(squared), kept)) + 1;
-  }
+  };
+  far_.resize(static_cast<std::size_t>(workers.size()));
+  for (std::vector<Place>& far : far_) far.clear();
+  workers.share_out(n, [&](int worker, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) find_in(first_own + found_[k], far_[static_cast<std::size_t>(worker)]);
+  });
+  for (const std::vector<Place>& far : far_)
+    for (const Place& place : far) move_reference(place);
 }
 
 void TiledPacking::move_reference(Place place) {
@@ -210,12 +218,17 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
 
 // ---- the rest
 
-void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit) const {
-  for (std::uint32_t cell = cells_.first_own(); cell < cells_.last_own(); ++cell) {
-    if (cells_.is_image(cell)) continue;
-    const Cell listed_in = cells_.lattice().cell(cell);
-    cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.grain(slot, listed_in)); });
-  }
+void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit, Workers* workers) const {
+  const auto visit_cells = [&](int, std::size_t first, std::size_t last) {
+    for (std::uint32_t k = static_cast<std::uint32_t>(first); k < last; ++k) {
+      const std::uint32_t cell = cells_.first_own() + k;
+      if (cells_.is_image(cell)) continue;
+      const Cell listed_in = cells_.lattice().cell(cell);
+      cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.grain(slot, listed_in)); });
+    }
+  };
+  const std::size_t owned = cells_.last_own() - cells_.first_own();
+  workers ? workers->share_out(owned, visit_cells) : visit_cells(0, 0, owned);
 }
 
 void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {
@@ -274,7 +287,7 @@ void TiledPacking::find_larger_overlap(std::uint32_t slot, double& least, Overla
 
 std::size_t TiledPacking::memory() const {
   return cells_.memory() + walls_.memory() + lists_.memory() + moves_.memory() +
-         bytes_in(work_, unsupported_, drifted_, found_);
+         bytes_in(work_, unsupported_, drifted_, far_, found_);
 }
 
 }  // namespace spot

@@ -44,10 +44,9 @@ void WallMarks::other_contacts(const Container& container, const Vector3& centre
     container.other_contacts(centre, reach, contacts);
 }
 
-void WallMarks::mark(std::uint32_t slot, const Container& container) {
+std::uint8_t WallMarks::mark_of(std::uint32_t slot, const Container& container) const {
   const CellLattice& lattice = cells_.lattice();
-  const std::uint32_t cell = cells_.cell_of(slot);
-  const Vector3 at = lattice.low() + cells_.from_low(cells_.references[slot], cell);
+  const Vector3 at = lattice.low() + cells_.from_low(cells_.references[slot], cells_.cell_of(slot));
   const double reach = 0.5 * (lattice.diameter() + lattice.skin());
   std::uint8_t mark = 0;
   for (std::size_t k = 0; k < planes_.size(); ++k) {
@@ -59,13 +58,17 @@ void WallMarks::mark(std::uint32_t slot, const Container& container) {
   WallContacts contacts;
   other_contacts(container, at, reach, contacts);
   if (contacts.begin() != contacts.end()) mark |= near_other_wall;
+  return mark;
+}
+
+void WallMarks::mark(std::uint32_t slot, std::uint8_t mark) {
   near_wall_[slot] = mark;
-  if (mark != 0) cell_near_wall_[cell] = 1;
+  if (mark != 0) cell_near_wall_[cells_.cell_of(slot)] = 1;
 }
 
 void WallMarks::mark_all(const Container& container) {
   find_planes(container);
-  cells_.visit_own([&](std::uint32_t slot) { mark(slot, container); });
+  cells_.visit_own([&](std::uint32_t slot) { mark(slot, mark_of(slot, container)); });
 }
 
 void WallMarks::push_off_planes(std::uint32_t slot, float strength, Point& push) const {

@@ -71,6 +71,15 @@ void Workers::run(const std::function<void(int)>& job) {
   if (first) std::rethrow_exception(first);
 }
 
+void Workers::share_out(std::size_t n, const std::function<void(int, std::size_t, std::size_t)>& job) {
+  if (n == 0) return;
+  const auto parts = static_cast<std::size_t>(size());
+  run([&](int worker) {
+    const auto part = static_cast<std::size_t>(worker);
+    job(worker, n * part / parts, n * (part + 1) / parts);
+  });
+}
+
 /// Whoever leaves a thread by an exception ends the program.
 void Workers::attempt(const std::function<void(int)>& job, int worker) noexcept {
   try {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "spot/base/errors.hpp"
 #include "spot/base/memory.hpp"
@@ -15,15 +16,20 @@ DilationField::DilationField(const SpotParameters& parameters, const Container& 
       spot_volume_(parameters.missing_volume(diameter)),
       reference_(parameters.dilation) {}
 
-void DilationField::count(const std::vector<Vector3>& spots, Communicator& communicator) {
-  box_ = lattice_.around(spots, communicator);
+void DilationField::count(const std::vector<Vector3>& spots, Communicator& communicator, Workers& workers) {
+  const NodeLattice::Box before = std::exchange(box_, lattice_.around(spots, communicator));
   counts_.assign(box_.size(), 0);
-  counted_volumes_.clear();
-  if (counts_.empty()) return;  // nowhere is a spot
-  for (const Vector3& spot : spots)
-    for (const NodeLattice::Corner& corner : lattice_.corners(spot)) counts_[box_.place(corner.node)] += corner.weight;
+  std::vector<std::vector<std::int64_t>> of_workers(static_cast<std::size_t>(workers.size()), counts_);
+  workers.share_out(spots.size(), [&](int worker, std::size_t first, std::size_t last) {
+    std::vector<std::int64_t>& counts = of_workers[static_cast<std::size_t>(worker)];
+    for (std::size_t k = first; k < last; ++k)
+      for (const NodeLattice::Corner& corner : lattice_.corners(spots[k]))
+        counts[box_.place(corner.node)] += corner.weight;
+  });
+  for (const std::vector<std::int64_t>& counts : of_workers)
+    for (std::size_t k = 0; k < counts.size(); ++k) counts_[k] += counts[k];
   counts_ = communicator.sum(std::move(counts_));
-  find_volumes();
+  if (!(box_ == before)) find_volumes();
 }
 
 void DilationField::find_volumes() {

@@ -93,12 +93,17 @@ void NodeLattice::replace_container(const Container& container) {
 
 NodeLattice::Box NodeLattice::around(const std::vector<Vector3>& points, Communicator& communicator) const {
   std::vector<double> ends(6, std::numeric_limits<double>::infinity());  // least nodes, and those of mirrored axes
-  for (const Vector3& point : points)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double low = std::floor(cell_of(point, axis));
-      ends[axis] = std::min(ends[axis], low);
-      ends[3 + axis] = std::min(ends[3 + axis], -1.0 - low);
+  if (!points.empty()) {
+    Vector3 low = points.front(), high = low;
+    for (const Vector3& point : points) {
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
     }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ends[axis] = std::floor(cell_of(low, axis));
+      ends[3 + axis] = -1.0 - std::floor(cell_of(high, axis));
+    }
+  }
   ends = communicator.least(ends);
   Box box;
   if (std::isinf(ends[0])) return box;

@@ -68,7 +68,7 @@ Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) c
   Spot spot{id, 0, outlet.centre, time};
   Vector3 from_centre = outlet.hole->point(parameters_.radius, numbers[1], numbers[2]);
   from_centre.z() = -parameters_.radius;
-  spot.position += from_centre;
+  spot.position = container.periodic().wrap(spot.position + from_centre);
   draw_next_step(spot);
   return spot;
 }

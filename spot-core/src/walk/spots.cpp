@@ -40,25 +40,44 @@ void Spots::give_birth(double until, const Container& container, const Belongs& 
   while (next_birth_ <= until) bear_next(container, here);
 }
 
-void Spots::set_relative_speeds(double now, Communicator& communicator) {
+void Spots::set_relative_speeds(double now, Communicator& communicator, Workers& workers) {
   if (!dilates_) return;
   std::vector<Vector3> positions;
   for (const Place& place : places_)
     if (!place.removed) positions.push_back(place.spot.position);
-  dilation_.count(positions, communicator);
-  for (Place& place : places_)
-    if (!place.removed) walk_.set_relative_speed(place.spot, now, dilation_.relative_speed(place.spot.position));
+  dilation_.count(positions, communicator, workers);
+  workers.share_out(places_.size(), [&](int, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      Spot& spot = places_[k].spot;
+      if (!places_[k].removed) walk_.set_relative_speed(spot, now, dilation_.relative_speed(spot.position));
+    }
+  });
   queued_ = false;
 }
 
-void Spots::step_until(double until, const Container& container,
+void Spots::step_until(double until, const Container& container, Workers& workers,
                        const std::function<void(const Spot&, const std::vector<Move>&)>& visit) {
-  std::vector<Move> moves;
-  for (Place& place : places_) {
-    if (place.removed) continue;
-    moves.clear();
-    while (place.spot.next_step <= until) moves.push_back(walk_.step(place.spot, container, surface_));
-    if (!moves.empty()) visit(place.spot, moves);
+  stepped_.assign(static_cast<std::size_t>(workers.size()), {});
+  const auto step = [&](int worker, std::size_t first, std::size_t last) {
+    Stepped& stepped = stepped_[static_cast<std::size_t>(worker)];
+    for (std::size_t k = first; k < last; ++k) {
+      Spot& spot = places_[k].spot;
+      if (places_[k].removed || !(spot.next_step <= until)) continue;
+      while (spot.next_step <= until) stepped.moves.push_back(walk_.step(spot, container, surface_));
+      stepped.ends.push_back({k, stepped.moves.size()});
+    }
+  };
+  if (container.concurrent())
+    workers.share_out(places_.size(), step);
+  else
+    step(0, 0, places_.size());
+  for (const Stepped& stepped : stepped_) {
+    auto first = stepped.moves.begin();
+    for (const auto& [place, moves] : stepped.ends) {
+      const auto last = stepped.moves.begin() + static_cast<std::ptrdiff_t>(moves);
+      visit(places_[place].spot, {first, last});
+      first = last;
+    }
   }
   queued_ = false;
 }
@@ -96,7 +115,8 @@ std::optional<Move> Spots::next_step(double time, const Container& container, co
     const double event = events_.empty() ? next_birth_ : std::min(next_birth_, events_.front().time);
     if (next_setting() <= std::min(event, time)) {
       Alone alone;
-      set_relative_speeds(next_setting(), alone);
+      Workers one_thread(1);
+      set_relative_speeds(next_setting(), alone, one_thread);
       if (settings_ > 0) update_flow(setting_interval_, alone);
       update_surface(next_setting(), visit_grains, alone);
       ++settings_;
@@ -124,11 +144,16 @@ std::vector<Spots::Place>::iterator Spots::find(std::int64_t spot) {
 }
 
 Spots::Carried Spots::carry(const Move& move, int enclosed, const Container& container) {
+  const Carried carried = exchange(move, enclosed, container);
+  if (shears_ && find(move.spot) != places_.end()) add_to_flow(move, carried.volume);
+  return carried;
+}
+
+Spots::Carried Spots::exchange(const Move& move, int enclosed, const Container& container) {
   Carried carried;
   const auto place = critical_.on() ? find(move.spot) : places_.end();
   if (place == places_.end()) return carried;
   carried.volume = place->spot.volume;
-  if (shears_) flow_.add(move, carried.volume);
   const double shear = shears_ ? flow_.shear(move.middle) : 0.0;
   place->spot.volume = critical_.volume_after(carried.volume, move, enclosed, shear, container);
   carried.left = static_cast<std::int64_t>((carried.volume - place->spot.volume) * CriticalState::volume_parts);

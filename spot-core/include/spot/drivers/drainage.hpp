@@ -40,7 +40,6 @@ class Drainage {
   /// grain that comes is outside, which changes nothing, or if it overlaps another more deeply than is allowed at the
   /// start, after which the drainage is of no use.
   void change_grains(const GrainChanges& changes);
-
   /// The same, told what all grains are now. On one rank only.
   void replace_grains(const std::vector<Grain>& grains);
 
@@ -53,6 +52,10 @@ class Drainage {
 
   /// Calls visit(grain) for all grains, in no particular order.
   virtual void visit_grains(const std::function<void(const Grain&)>& visit) const = 0;
+  /// The same, from all threads of the driver at once.
+  virtual void visit_grains_at_once(const std::function<void(const Grain&)>& visit) const { visit_grains(visit); }
+  /// Calls job(first, last) for parts of 0 ... n, exclusive, on all threads of the driver.
+  virtual void share_out(std::size_t n, const std::function<void(std::size_t, std::size_t)>& job) const { job(0, n); }
 
   /// All coordinates of grains are multiples of it.
   virtual const Quantum& quantum() const = 0;
@@ -82,7 +85,6 @@ class Drainage {
   std::vector<Grain> take_drained();
 
   /// Counts from now on how many moves move each grain, which is not free.
-  /// `enclosed`: grain volume (1024 = grain_volume).
   void count_moves_received() { received_.emplace(); }
 
   /// What was counted since the last call, on this rank. A grain that came from another rank has been counted there,
@@ -118,22 +120,20 @@ class Drainage {
     counters_.volume_moved += enclosed;
   }
   /// The weight of a move that encloses this grain volume (1024 = grain_volume): by its fixed volume, if it has one,
-  /// and by what its spot carries, which changes. For each move once, in the order of a spot's moves.
-  double weigh(const Move& move, int enclosed, Spots& spots);
+  /// and by what its spot carries.
+  double weigh(const Move& move, int enclosed, const Spots::Carried& carried);
   void count_sweep(std::size_t grains) {
     ++counters_.sweeps;
     counters_.grains_swept += static_cast<std::int64_t>(grains);
   }
   /// Goes on counting from a saved state.
   void set_counters(const Counters& counters) { counters_ = counters; }
-
   /// Grains have left below the outlet.
   void add_drained(const std::vector<Grain>& grains);
 
  private:
   /// Carries out what change_grains() has checked; returns the largest overlap of a grain that came, as it came.
   virtual Overlap carry_out(const GrainChanges& changes) = 0;
-
   /// There are other walls now.
   virtual void take_new_container() = 0;
 

@@ -47,6 +47,12 @@ class WindowedDrainage : public Drainage {
   void advance_to(double time) override;
   void set_threads(int threads) override { workers_ = std::make_unique<Workers>(threads); }
   void visit_grains(const std::function<void(const Grain&)>& visit) const override { packing_.visit_grains(visit); }
+  void visit_grains_at_once(const std::function<void(const Grain&)>& visit) const override {
+    packing_.visit_grains(visit, workers_.get());
+  }
+  void share_out(std::size_t n, const std::function<void(std::size_t, std::size_t)>& job) const override {
+    workers_->share_out(n, [&](int, std::size_t first, std::size_t last) { job(first, last); });
+  }
   const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override { return spots_.live(); }
   Overlap largest_overlap() override { return packing_.largest_overlap(); }
@@ -74,6 +80,7 @@ class WindowedDrainage : public Drainage {
   void step_to(double until);
   void displace();
   void weigh(const std::vector<int>& enclosed, std::vector<Move>& moves);
+  void carry();
   void remove_spots_above();
   void let_settle(bool everybody);
   void relax();
@@ -93,6 +100,7 @@ class WindowedDrainage : public Drainage {
   // Of the window at hand.
   SharedMoves moves_;
   std::vector<Move> displacing_;  // in the same order
+  std::vector<Spots::Carried> carried_;
 };
 
 }  // namespace spot

@@ -30,7 +30,7 @@ class Container {
     this->contacts(centre, reach, contacts);
   }
 
-  /// May several threads ask for contacts at the same time?
+  /// May several threads ask at the same time, whatever they ask?
   virtual bool concurrent() const { return true; }
 
   virtual const Outlets& outlets() const = 0;
@@ -40,6 +40,9 @@ class Container {
 
   /// Is this place over or under an outlet, or no farther than `margin` beside it?
   bool is_over_outlet(const Vector3& place, double margin = 0.0) const;
+
+  /// The outlet, or the image of one, nearest to a place.
+  const Outlet& nearest_outlet(const Vector3& place) const;
 
   /// May a grain that is here now, below the outlets, have come out of one? Else it went through a wall.
   virtual bool may_have_left_to(const Vector3&) const { return true; }

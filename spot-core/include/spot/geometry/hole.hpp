@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "spot/base/vector.hpp"
@@ -47,6 +48,10 @@ class Hole {
   /// By Beverloo's law, how many grains of a diameter leave through it per time, over their number per volume and the
   /// square root of gravity (length^2.5); 0 where it is too narrow.
   virtual double discharge(const BeverlooLaw& law, double diameter) const = 0;
+
+  /// The same without ends along x (0) or y (1), where space repeats as soon as it ends; none if its sides are not
+  /// straight.
+  virtual std::shared_ptr<const Hole> without_ends(int) const { return nullptr; }
 
   /// All that is above and below the hole, with this place as its centre.
   virtual Solid column(const Vector3& centre) const = 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "spot/geometry/outlet.hpp"
+#include "spot/geometry/periodic.hpp"
 
 namespace spot {
 
@@ -24,6 +25,9 @@ class Outlets {
   std::vector<Outlet>::const_iterator end() const { return all_.end(); }
   std::size_t size() const { return all_.size(); }
   const Outlet& operator[](std::size_t number) const { return all_[number]; }
+
+  /// The same where space repeats: a slot as long as the period has no ends along that axis, and begins with the cell.
+  Outlets repeated(const Periodic& periodic) const;
 
   double height() const { return all_.front().centre.z(); }
 

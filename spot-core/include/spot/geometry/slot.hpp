@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <optional>
+
 #include "spot/geometry/hole.hpp"
 
 namespace spot {
@@ -21,10 +23,14 @@ class Slot : public Hole {
   double half_width(int axis) const override { return half_[axis]; }
   double farthest(const Vector3& place) const override;
   double discharge(const BeverlooLaw& law, double diameter) const override;
+  std::shared_ptr<const Hole> without_ends(int axis) const override;
   Solid column(const Vector3& centre) const override;
 
  private:
+  bool ends(int axis) const { return axis != endless_; }
+
   Vector3 half_;  // widths along x and y
+  std::optional<int> endless_;
 };
 
 }  // namespace spot

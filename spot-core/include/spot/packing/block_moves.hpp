@@ -23,8 +23,9 @@ struct Places;
 /// The moves of a window, as they displace the blocks of grains in the cells: which rows of cells each may reach, what
 /// it encloses, and its displacements, one move after the other.
 ///
-/// Each worker owns some consecutive layers, and does there all that moves do in them, in the order of the moves; so
-/// the number of workers changes nothing.
+/// Each worker owns some rows of cells, and does there all that moves do in them, in the order of the moves; so the
+/// number of workers changes nothing. Every move has rows of all workers in its reach. (In layers of their own most
+/// would wait: moves that follow each other are of spots of one age, at one height.)
 class BlockMoves {
  public:
   BlockMoves(Cells& cells, const kernels::Kernels& kernels) : cells_(cells), kernels_(kernels) {}
@@ -61,15 +62,16 @@ class BlockMoves {
   std::size_t memory() const;
 
  private:
-  /// What one worker does: what the moves do in some of the own layers.
+  /// What one worker does: what the moves do in some rows of the own layers.
   struct Part {
-    int first_layer, last_layer;
+    RowsAsked asked;
     std::vector<CellRow> rows;             // of cells that moves may reach, move by move
     std::vector<Point> shifts;             // of each row, to the image of the move that reaches it, if space repeats
     std::vector<std::size_t> end_of_rows;  // in `rows`, of each move
     std::vector<CellRow> reached;          // by any move: in each row of the lattice, from the first to the last cell
     std::vector<std::uint32_t> blocks;     // of slots, that the move at hand may reach
     std::vector<int> enclosed;             // volume of the grains here, by each move
+    std::vector<std::int64_t> work;        // cells reached by the moves, in each own layer
     std::size_t counted;                   // the end of the moves whose lengths are in the drift of cells
     bool must_rebuild;                     // has the drift of a cell become too long?
 
@@ -99,8 +101,7 @@ class BlockMoves {
 
   Cells& cells_;
   const kernels::Kernels& kernels_;
-  std::vector<Part> parts_;                  // one for each worker
-  std::vector<std::int64_t> cells_reached_;  // by the moves of a window, in each own layer, and 1
+  std::vector<Part> parts_;  // one for each worker
   std::vector<Point> middles_, steps_;
   std::vector<std::int32_t> lengths_;  // of the displacements, at most, in quanta
   float tilt_unit_ = 0.0f;             // NonaffineMotion::unit()

@@ -22,6 +22,16 @@ struct CellRow {
   std::uint32_t first, last;
 };
 
+/// Rows along x: of the layers held from `first_layer` to `last_layer`, exclusive, with images of cells or without;
+/// and of them those of one part. Next to each other, in a layer or above, are rows of different parts.
+struct RowsAsked {
+  int first_layer, last_layer;
+  bool with_images = false;
+  int part = 0, parts = 1;
+
+  bool contain(int y, int z) const { return (y + z + parts) % parts == part; }  // y = -1: images
+};
+
 /// The lattice of cells over a packing, and the places in them as whole numbers of quanta.
 ///
 /// "From low": in the units of the deck, from the lowest corner of the lattice. A rank *holds* consecutive layers of
@@ -110,16 +120,14 @@ class CellLattice {
   /// A number of whole cells along each axis, in wrapped quanta.
   Point wrapped_cells(const std::array<int, 3>& cells) const;
 
-  /// Adds the rows of cells within reach of a place, in the layers held from `first` to `last`, exclusive; with images
-  /// or without.
-  void find_rows(const Vector3& from_low, double reach, int first, int last, bool with_images,
-                 std::vector<CellRow>& rows) const;
+  /// Adds the rows of cells within reach of a place, of those asked for.
+  void find_rows(const Vector3& from_low, double reach, const RowsAsked& asked, std::vector<CellRow>& rows) const;
 
  private:
   int held(int axis) const { return n_[static_cast<std::size_t>(axis)] + 2 * images_[static_cast<std::size_t>(axis)]; }
   void set_edge(std::size_t axis);
   template <typename X, typename Y>
-  void find_rows(const Vector3& from_low, double reach, int first, int last, const X& along_x, const Y& along_y,
+  void find_rows(const Vector3& from_low, double reach, const RowsAsked& asked, const X& along_x, const Y& along_y,
                  std::vector<CellRow>& rows) const;
 
   double diameter_, extent_;

@@ -45,8 +45,8 @@ class NeighbourLists : public SlotData {
 
   /// Lists a grain and its neighbours with each other, and marks it if it is near a wall.
   void list(std::uint32_t slot, const Container& container);
-  /// Lists many whose references are all in place already: workers find their neighbours, and one of them writes them
-  /// down.
+  /// Lists many whose references are all in place already: workers find their neighbours and write their lists, and one
+  /// of them writes down what is new to the neighbours, which is little.
   void list(const std::vector<Place>& places, const Container& container, Workers& workers);
   void unlist(std::uint32_t slot);
   /// Hands the list of one slot to another, which has none.
@@ -59,22 +59,33 @@ class NeighbourLists : public SlotData {
   std::size_t memory() const;
 
  private:
-  /// The neighbours that one worker has found, of one grain after the other.
+  /// What one worker has found for one grain after the other, and what is left to be written down.
   struct Finding {
-    std::vector<std::uint32_t> found;
-    std::vector<std::size_t> ends;  // in `found`, of each grain
+    std::vector<std::uint32_t> found;  // neighbours of the grain at hand
     std::vector<CellRow> rows;
+    std::vector<std::uint8_t> marks;  // of each grain
+    struct Pair {
+      std::uint32_t slot, neighbour;
+    };
+    std::vector<Pair> gone, come;                    // in the lists of grains that are not listed anew
+    std::vector<std::uint32_t> crowded;              // grains whose lists need more room
+    std::vector<std::vector<std::uint32_t>> crowds;  // their neighbours
 
     void clear() {
-      found.clear();
-      ends.clear();
+      marks.clear();
+      gone.clear();
+      come.clear();
+      crowded.clear();
+      crowds.clear();
     }
   };
 
   std::uint32_t* list_of(std::uint32_t slot);
   const std::uint32_t* list_of(std::uint32_t slot) const;
   void find_neighbours(std::uint32_t slot, Finding& finding) const;
-  void list(std::uint32_t slot, const std::uint32_t* found, std::size_t n, const Container& container);
+  void find_changes(std::uint32_t slot, Finding& finding) const;
+  void list(std::uint32_t slot, Finding& finding);
+  void write_down(const Finding& finding);
   void add_neighbour(std::uint32_t slot, std::uint32_t neighbour);
   void remove_neighbour(std::uint32_t slot, std::uint32_t neighbour);
   void give_room(std::uint32_t slot);
@@ -89,7 +100,7 @@ class NeighbourLists : public SlotData {
   std::vector<std::uint8_t> room_;    // 2^(room - 1) blocks, or none
   std::vector<std::uint8_t> size_;
   std::array<std::vector<std::uint32_t>, 4> unused_;  // blocks, by how many there are in a row
-  std::vector<std::uint8_t> marks_;                   // of slots, zero between uses
+  std::vector<std::uint8_t> anew_;                    // is the grain of a slot being listed anew?
   std::vector<Finding> findings_;
 };
 

@@ -62,8 +62,8 @@ class TiledPacking {
   /// the part of the busiest rank smaller by more than it costs. Returns whether it has.
   bool balance(const Container& container);
 
-  /// Calls visit(grain) for all grains of this rank, in no particular order.
-  void visit_grains(const std::function<void(const Grain&)>& visit) const;
+  /// Calls visit(grain) for all grains of this rank, in no particular order; from all threads at once, if there are.
+  void visit_grains(const std::function<void(const Grain&)>& visit, Workers* workers = nullptr) const;
 
   /// Gives moves their weights, when it is told the volume of this rank's grains that each of them encloses.
   using Weigh = std::function<void(const std::vector<int>& enclosed, std::vector<Move>& moves)>;
@@ -126,7 +126,7 @@ class TiledPacking {
   Place put(const Grain& grain, std::int32_t state);
   std::vector<Grain> take_own(const std::vector<Grain>& grains) const;
   void list_all(const Container& container);
-  void find_drifted();
+  void find_drifted(Workers& workers);
   void move_reference(Place place);
   void cover(const std::vector<Grain>& come, const Container& container);
   void grow(const std::array<int, 3>& below, const std::array<int, 3>& above, const Container& container);
@@ -139,10 +139,11 @@ class TiledPacking {
   NeighbourLists lists_;
   GhostLayers ghosts_;
   BlockMoves moves_;
-  bool between_moves_ = false;      // of a window, when places are where these have them
-  std::vector<std::int64_t> work_;  // in each own layer, since balance()
-  std::vector<Place> unsupported_;  // grains that may have lost what bore them
-  std::vector<Place> drifted_;      // too far from where they were listed
+  bool between_moves_ = false;           // of a window, when places are where these have them
+  std::vector<std::int64_t> work_;       // in each own layer, since balance()
+  std::vector<Place> unsupported_;       // grains that may have lost what bore them
+  std::vector<Place> drifted_;           // too far from where they were listed
+  std::vector<std::vector<Place>> far_;  // the same, as each worker finds them
   std::vector<std::uint32_t> found_;
 };
 

@@ -20,8 +20,9 @@ class WallMarks : public SlotData {
 
   /// Marks all own grains anew, as after the walls changed.
   void mark_all(const Container& container);
-  /// Marks one grain by where it was listed.
-  void mark(std::uint32_t slot, const Container& container);
+  /// The mark of one grain, by where it was listed.
+  std::uint8_t mark_of(std::uint32_t slot, const Container& container) const;
+  void mark(std::uint32_t slot, std::uint8_t mark);
   void find_planes(const Container& container);
 
   bool near_wall(std::uint32_t slot) const { return near_wall_[slot] != 0; }

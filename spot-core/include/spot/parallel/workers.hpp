@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -30,6 +31,10 @@ class Workers {
   /// have thrown, rethrows what the first of them, in this order, has: where they share work out in order, what one
   /// thread alone would have met. The threads are ready for more.
   void run(const std::function<void(int)>& job);
+
+  /// Calls job(worker, first, last) for consecutive parts of 0 ... n, exclusive, as equal as can be: one for each
+  /// worker, in order. If there are none, nobody is called.
+  void share_out(std::size_t n, const std::function<void(int, std::size_t, std::size_t)>& job);
 
  private:
   void help(int worker);

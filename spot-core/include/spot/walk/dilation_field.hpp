@@ -7,6 +7,7 @@
 #include "spot/base/bytes.hpp"
 #include "spot/geometry/container.hpp"
 #include "spot/parallel/communicator.hpp"
+#include "spot/parallel/workers.hpp"
 #include "spot/walk/node_lattice.hpp"
 #include "spot/walk/parameters.hpp"
 
@@ -28,13 +29,13 @@ class DilationField {
   DilationField(const SpotParameters& parameters, const Container& container, double diameter);
 
   /// Collective. Counts spots anew, of which each rank brings some.
-  void count(const std::vector<Vector3>& spots, Communicator& communicator);
+  void count(const std::vector<Vector3>& spots, Communicator& communicator, Workers& workers);
 
   /// The share of the volume around a point that spots take (dimensionless). Infinite where walls leave no volume, as
   /// below the outlets.
   double at(const Vector3& point) const;
 
-  /// The speed of a spot there, over v_s.
+  /// The speed of a spot there, over v_s. Several threads may ask for those of spots that have been counted.
   double relative_speed(const Vector3& point) const;
 
   /// Works out the volume inside the walls anew, as after these changed.

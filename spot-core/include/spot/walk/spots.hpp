@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "spot/base/bytes.hpp"
 #include "spot/parallel/communicator.hpp"
+#include "spot/parallel/workers.hpp"
 #include "spot/walk/critical_state.hpp"
 #include "spot/walk/dilation_field.hpp"
 #include "spot/walk/flow_field.hpp"
@@ -36,7 +38,7 @@ class Spots {
       double time, const Container& container, const VisitGrains& visit_grains = [](const auto&) {});
 
   /// Collective. From `now` on all spots climb as fast as the dilation there lets them.
-  void set_relative_speeds(double now, Communicator& communicator);
+  void set_relative_speeds(double now, Communicator& communicator, Workers& workers);
 
   /// Whom a spot belongs to.
   using Belongs = std::function<bool(const Spot&)>;
@@ -44,9 +46,9 @@ class Spots {
   /// Births up to and including `until`: every rank sees all of them, and keeps those that belong to it.
   void give_birth(double until, const Container& container, const Belongs& here);
 
-  /// Steps up to and including `until`, of one spot after the other. Calls visit(spot, moves) for those that have made
-  /// any.
-  void step_until(double until, const Container& container,
+  /// Steps up to and including `until`. Then calls visit(spot, moves), of one spot after the other, for those that have
+  /// made any.
+  void step_until(double until, const Container& container, Workers& workers,
                   const std::function<void(const Spot&, const std::vector<Move>&)>& visit);
 
   struct Carried {
@@ -56,6 +58,12 @@ class Spots {
   /// What the spot of a move carries in it; from then on it carries what it has not left there (CriticalState). For
   /// each move once, in the order of a spot's moves. `enclosed`: grain volume (1024 = grain_volume).
   Carried carry(const Move& move, int enclosed, const Container& container);
+
+  // The same in two parts, of which several threads may do the first, for different spots.
+  Carried exchange(const Move& move, int enclosed, const Container& container);
+  void add_to_flow(const Move& move, double carried) {
+    if (shears_ && critical_.on()) flow_.add(move, carried);
+  }
 
   /// Collective. `elapsed` after the last time, spots learn how the flow is sheared now.
   void update_flow(double elapsed, Communicator& communicator);
@@ -97,6 +105,12 @@ class Spots {
     bool operator<(const Event& other) const { return time != other.time ? time > other.time : spot > other.spot; }
   };
 
+  /// What one worker has let spots do.
+  struct Stepped {
+    std::vector<Move> moves;
+    std::vector<std::pair<std::size_t, std::size_t>> ends;  // places of spots, and the ends of their moves
+  };
+
   bool bear_next(const Container& container, const Belongs& here);
   std::vector<Place>::iterator find(std::int64_t spot);
   void queue_all();
@@ -108,6 +122,7 @@ class Spots {
   SpotWalk walk_;
   std::vector<Place> places_;  // in order of birth
   std::size_t removed_ = 0;
+  std::vector<Stepped> stepped_;  // kept to save allocations
   double next_birth_;
   std::int64_t born_ = 0;
   bool dilates_;

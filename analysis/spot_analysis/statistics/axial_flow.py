@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How grains flow in a hopper that is round about its axis: outflow, profiles of their fall, packing fraction, residence.
+
+Lengths are in grain diameters d, times in tau = sqrt(d/g). Standard errors are over pairs of successive snapshots.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+HEIGHTS = (5.0, 10.0, 15.0, 20.0)  # d, of the profiles
+HALF_SLAB = 1.0  # d
+RING = 2.0  # d, width of the rings of a profile
+LEVELS = (5.0, 10.0)  # d, from which residence is counted
+CORE = 8.0  # d, radius within which the packing fraction is counted
+
+
+@dataclass(frozen=True)
+class _Snapshot:
+    time: float
+    ids: np.ndarray
+    positions: np.ndarray
+
+
+def _mean(values):
+    """[mean, standard error] of independent values; not a number where there are none."""
+    values = np.asarray(values, dtype=float)
+    values = values[np.isfinite(values)]
+    if len(values) == 0:
+        return [float("nan"), float("nan")]
+    return [float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else float("nan")]
+
+
+def measure(frames, scene, start, end):
+    """Quantity -> [value, standard error].
+
+    frames : Frames of a drainage in the order of time; scene : AxialScene
+    start, end : the interval, tau
+
+    Raises ValueError if fewer than three snapshots lie in the interval.
+    """
+    snapshots = [_Snapshot(frame.timestep * scene.timestep / scene.tau, frame.ids, frame.positions / scene.diameter)
+                 for frame in frames]
+    inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
+    if len(inside) < 3:
+        raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
+    pairs = list(zip(inside, inside[1:]))
+    found = {"outflow": _mean([_left(before, after) / (after.time - before.time) for before, after in pairs])}
+    for height in HEIGHTS:
+        found.update(_profile(pairs, height, scene.radius_at(height)))
+    found["packing_fraction"] = _mean([_packing_fraction(s, scene) for s in inside])
+    for level in LEVELS:
+        found[f"residence_median_{level:g}d"] = _mean(_residence(snapshots, level, start, end))
+    return found
+
+
+def _left(before, after):
+    return np.count_nonzero(before.positions[:, 2] > 0) - np.count_nonzero(after.positions[:, 2] > 0)
+
+
+def _profile(pairs, height, radius):
+    """Rate of fall in rings around the axis, at a height, and that at the wall over that on the axis (mass flow index)."""
+    rings = int(radius / RING + 1e-6)
+    edges = np.append(RING * np.arange(rings), radius)  # the last is wider, up to the wall
+    speeds = np.array([_speeds(before, after, height, edges) for before, after in pairs])
+    name = f"speed_{height:g}d"
+    found = {f"{name}_r{(low + high) / 2:.1f}d": _mean(speeds[:, k]) for k, (low, high) in enumerate(zip(edges, edges[1:]))}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found[f"mass_flow_index_{height:g}d"] = _mean(speeds[:, -1] / speeds[:, 0])
+    return found
+
+
+def _speeds(before, after, height, edges):
+    _, first, second = np.intersect1d(before.ids, after.ids, assume_unique=True, return_indices=True)
+    middle = (before.positions[first] + after.positions[second]) / 2
+    fall = (before.positions[first, 2] - after.positions[second, 2]) / (after.time - before.time)
+    slab = np.abs(middle[:, 2] - height) < HALF_SLAB
+    ring = np.digitize(np.hypot(middle[slab, 0], middle[slab, 1]), edges) - 1
+    known = (ring >= 0) & (ring < len(edges) - 1)
+    count = np.bincount(ring[known], minlength=len(edges) - 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.bincount(ring[known], weights=fall[slab][known], minlength=len(edges) - 1) / count
+
+
+def _packing_fraction(snapshot, scene):
+    """Of the core of the cylinder, from its lower end to 6 d above: grain volume by centres."""
+    low = scene.cone_height / scene.diameter
+    x, y, z = snapshot.positions.T
+    count = np.count_nonzero((np.hypot(x, y) < CORE) & (z > low) & (z < low + 6.0))
+    return count * np.pi / 6 / (np.pi * CORE ** 2 * 6.0)
+
+
+def _residence(snapshots, level, start, end):
+    """Medians, for each snapshot in the interval, of the times that grains which leave then have taken from a level."""
+    passed, medians = {}, []
+    for before, after in zip(snapshots, snapshots[1:]):
+        later = dict(zip(after.ids.tolist(), after.positions[:, 2].tolist()))
+        stayed = []
+        for grain, height in zip(before.ids.tolist(), before.positions[:, 2].tolist()):
+            now = later.get(grain, -np.inf)
+            if height >= level > now and grain not in passed:
+                share = (height - level) / (height - max(now, 0.0))
+                passed[grain] = before.time + share * (after.time - before.time)
+            if height > 0.0 >= now and grain in passed:
+                stayed.append((before.time + after.time) / 2 - passed[grain])
+        if stayed and start <= before.time and after.time <= end:
+            medians.append(np.median(stayed))
+    return medians

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pour and drain a hopper of 800 grains through all that its decks write, and the errors for input that does not fit."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from liggghts_runs import DIAMETER, TAU, read_dump, run, run_ok
+
+# Few grains between round walls take long to rest: they need not here.
+HOPPER = {"angle": 45, "grains": 800, "width": 16, "pour_height": 40, "flux": 4000, "rest": 1, "python": "python3"}
+
+
+@pytest.fixture(scope="module")
+def hopper(tmp_path_factory):
+    """Output folder of a pour and a drainage of 8 tau."""
+    out = tmp_path_factory.mktemp("hopper")
+    run_ok("hopper", "in.pour", out=out, **HOPPER)
+    run_ok("hopper", "in.drain", out=out, time=8 * TAU, **{**HOPPER, "rest": 0})
+    return out
+
+
+def beyond_walls(columns):
+    """How far the centre of a grain comes closer to the wall than its radius, at most (d); of those above the outlet."""
+    radius, z = np.hypot(columns["x"], columns["y"]) / DIAMETER, columns["z"] / DIAMETER
+    cone = (4 + z - radius) * math.cos(math.pi / 4)  # 45 degrees
+    return (0.5 - np.minimum(cone, 8 - radius))[z > 0.5].max()
+
+
+def test_grains_stay_inside_and_leave_through_the_outlet(hopper):
+    [(_, first)], [(_, last)] = (read_dump(hopper / "drain" / f"drain.{step}.dump") for step in (0, 40000))
+    assert len(first["id"]) == 800
+    assert np.count_nonzero(last["z"] > 0) < 700
+    # The mesh has 96 sides around the round walls.
+    assert beyond_walls(first) < 0.02 and beyond_walls(last) < 0.02
+
+
+def test_the_scene_tells_the_hopper(hopper):
+    scene = json.loads((hopper / "drain" / "scene.json").read_text())
+    assert scene["cone_height"] == pytest.approx(4 * DIAMETER)
+    assert scene["cylinder_radius"] == pytest.approx(8 * DIAMETER)
+    assert scene["orifice_radius"] == pytest.approx(4 * DIAMETER)
+    assert scene["cone_angle"] == 45 and scene["grains"] == 800
+
+
+@pytest.mark.parametrize("deck, change, said", [
+    ("in.pour", {"angle": 90}, "angle is 90 degrees"),
+    ("in.pour", {"orifice": 16}, "orifice is 16 d"),
+    ("in.pour", {"grains": 20000}, "raise pour_height"),
+    ("in.pour", {"flux": 40000}, "more than 0.2"),
+    ("in.drain", {}, "run in.pour first")])
+def test_mistakes_are_named(tmp_path, deck, change, said):
+    done = run("hopper", deck, out=tmp_path, **{**HOPPER, **change})
+    assert said in done.stdout + done.stderr

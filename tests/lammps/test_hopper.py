@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""examples/hoppers/in.hopper_spot, a short stretch of it, on its real packings."""
+
+import json
+import os
+import subprocess
+
+import pytest
+import zstandard
+
+from lammps_runs import FRONT_END, PLUGIN, ROOT, needs_mpirun, on_ranks
+
+HOPPERS = ROOT / "examples" / "hoppers"
+
+
+def run_hopper(out, launcher=(), **variables):
+    """The last snapshot of the deck, as bytes, and what the program said."""
+    words = [word for name, value in {"out": out, "time": 0.035, **variables}.items() for word in ("-var", name, str(value))]
+    done = subprocess.run([*launcher, FRONT_END, "-in", "in.hopper_spot", "-log", "none", "-nocite", *words], cwd=HOPPERS,
+                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    return zstandard.open(out / "drain.4.dump.zst", "rb").read(), done.stdout
+
+
+@needs_mpirun
+@pytest.mark.parametrize("angle, height", [(30, 13.8564), (60, 4.6188)])
+def test_the_deck_drains_both_hoppers(tmp_path, angle, height):
+    one, _ = run_hopper(tmp_path / "one", angle=angle)
+    scene = json.loads((tmp_path / "one" / "scene.json").read_text())
+    assert scene["cone_height"] == pytest.approx(0.003 * height, rel=1e-5) and scene["grains"] == 12000
+    assert int(one.split(b"\n")[3]) < 12000
+    assert run_hopper(tmp_path / "two", launcher=on_ranks(2), angle=angle, threads=2)[0] == one
+
+
+def test_the_outflow_may_be_predicted(tmp_path):
+    _, said = run_hopper(tmp_path / "out", rates="beverloo", number=9.81)
+    assert "Beverloo's law predicts an outflow of 4111" in said  # 71.9 a tau
