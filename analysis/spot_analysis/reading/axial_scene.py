@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A hopper that is round about a vertical axis: a cone under an upright cylinder, as ``scene.json`` beside the dumps tells it."""
 
-import json
 import math
 import os
 from dataclasses import dataclass, fields
 
 from ..base.errors import SceneError
+from .json_object import read_object
+from .scene import FILE_NAME
 
 
 @dataclass(frozen=True)
@@ -46,16 +47,10 @@ class AxialScene:
 
 def load_axial_scene(folder):
     """The scene beside the dumps in ``folder``; raises SceneError naming the file and what is missing."""
-    path = os.path.join(folder, "scene.json")
-    try:
-        with open(path, encoding="utf-8") as handle:
-            values = json.load(handle)
-    except OSError as error:
-        raise SceneError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise SceneError(f"{path}: not valid JSON ({error})") from error
+    path = os.path.join(folder, FILE_NAME)
     names = [field.name for field in fields(AxialScene)]
-    missing = [name for name in names if not isinstance(values, dict) or name not in values]
+    values = read_object(path, f"the keys {', '.join(names)}")
+    missing = [name for name in names if name not in values]
     if missing:
         raise SceneError(f"{path}: no hopper, '{missing[0]}' is missing")
     return AxialScene(**{name: values[name] for name in names})
