@@ -14,9 +14,6 @@ struct BeverlooLaw {
 
   /// Holes that are narrower than so many diameters may clog.
   static constexpr double least_width = 6.0;
-
-  /// Throws InvalidParameter that names the first number outside its range.
-  void validate() const;
 };
 
 }  // namespace spot
