@@ -8,7 +8,11 @@ overlaps the mesh.
 
 import argparse
 import math
+import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from stl import write_stl  # noqa: E402  (beside this folder)
 
 
 def wall_triangles(profile, sides=96):
@@ -24,18 +28,6 @@ def wall_triangles(profile, sides=96):
     return triangles
 
 
-def write_stl(path, triangles):
-    with open(path, "w", encoding="ascii") as stl:
-        stl.write("solid walls\n")
-        for triangle in triangles:
-            # LIGGGHTS takes the normals from the order of the corners.
-            stl.write("facet normal 0 0 0\nouter loop\n")
-            for corner in triangle:
-                stl.write("vertex %.9g %.9g %.9g\n" % corner)
-            stl.write("endloop\nendfacet\n")
-        stl.write("endsolid walls\n")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("rim", type=float, help="radius of the outlet, at z = 0 (m)")
@@ -47,7 +39,7 @@ def main():
     try:
         if not 0 < args.rim < args.side or not 0 < args.shoulder < args.top:
             raise ValueError("radii and heights must be positive and increase")
-        write_stl(args.stl, wall_triangles([(args.rim, 0.0), (args.side, args.shoulder), (args.side, args.top)]))
+        write_stl(args.stl, "walls", wall_triangles([(args.rim, 0.0), (args.side, args.shoulder), (args.side, args.top)]))
     except (ValueError, OSError) as error:
         sys.exit(f"ERROR: {error}")
 

@@ -10,7 +10,11 @@ from the wall would not rest on them.
 
 import argparse
 import math
+import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from stl import write_stl  # noqa: E402  (beside this folder)
 
 
 def rim_angles(half_width, half_depth, sides):
@@ -55,17 +59,6 @@ def base_triangles(half_width, half_depth, radius, sliver, sides=96):
     return triangles
 
 
-def write_stl(path, triangles):
-    with open(path, "w", encoding="ascii") as stl:
-        stl.write("solid base\n")
-        for triangle in triangles:
-            stl.write("facet normal 0 0 1\nouter loop\n")
-            for x, y in triangle:
-                stl.write(f"vertex {x:.9g} {y:.9g} 0\n")
-            stl.write("endloop\nendfacet\n")
-        stl.write("endsolid base\n")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("half_width", type=float, help="half width of the base along x (m)")
@@ -75,7 +68,8 @@ def main():
     parser.add_argument("stl", help="file to write")
     args = parser.parse_args()
     try:
-        write_stl(args.stl, base_triangles(args.half_width, args.half_depth, args.radius, args.sliver))
+        flat = base_triangles(args.half_width, args.half_depth, args.radius, args.sliver)
+        write_stl(args.stl, "base", [[(x, y, 0.0) for x, y in corners] for corners in flat], "0 0 1")
     except (ValueError, OSError) as error:
         sys.exit(f"ERROR: {error}")
 
