@@ -18,7 +18,7 @@ version = release = (ROOT / "VERSION").read_text().strip()
 extensions = ["myst_parser"]
 root_doc = "docs/index"
 # docs/index.md is the front page of the site, README.md that of the repository.
-include_patterns = ["docs/**", "*.md", "*/README.md", "examples/**/README.md", "liggghts-inputs/**/README.md",
+include_patterns = ["docs/**", "*.md", "*/README.md", "examples/**/*.md", "liggghts-inputs/**/README.md",
                     "lammps-package/doc/*.rst"]
 exclude_patterns = ["README.md", "docs/site", "build*", "results", "**/.*"]
 
