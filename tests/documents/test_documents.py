@@ -14,6 +14,7 @@ from documents import ROOT, name
 every_document = pytest.mark.parametrize("path", documents.documents(), ids=name)
 every_readme = pytest.mark.parametrize("path", [p for p in documents.documents() if p.name == "README.md"], ids=name)
 
+ROOMS = ROOT / "spot-core" / "include", ROOT / "spot-core" / "include" / "spot", ROOT / "analysis" / "spot_analysis"
 LINE, COLUMNS, WORDS, WORDS_OF_THE_FIRST = 120, 6, 900, 600
 
 
@@ -59,15 +60,15 @@ def test_links(path):
 
 @every_document
 def test_files(path):
-    """What stands in backticks and looks like the path of a file, is one: from the document's folder or from the root. What is
-    built or written by a run need not be there."""
+    """What stands in backticks and looks like the path of a file, is one: from the document's folder, the root, or that of the
+    rooms. What is built or written by a run need not be there, nor what somebody may add as NAME."""
     missing = []
     for line, words in documents.in_backticks(path.read_text()):
         if not re.fullmatch(r"[\w.-]+(/[\w.-]+)*/[\w.-]+\.\w+", words.removeprefix("../").removeprefix("../")):
             continue
-        if re.match(r"(\.\./)*(build|results|post|venv|usr|PREFIX|LAMMPS|PROJECT|OUT)\b", words):
+        if re.match(r"(\.\./)*(build|results|post|venv|usr|PREFIX|LAMMPS|PROJECT|OUT)\b", words) or "NAME" in words:
             continue
-        if not any((folder / words).exists() for folder in (path.parent, ROOT)):
+        if not any((folder / words).exists() for folder in (path.parent, ROOT, *ROOMS)):
             missing.append((line, words))
     assert not missing, f"files that are not there: {missing}"
 
@@ -101,6 +102,25 @@ def test_commands(path):
                 if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", help_of(script)):
                     wrong.append(f"line {block.first_line}: {word} has no {option}")
     assert not wrong, "; ".join(wrong)
+
+
+def test_parameters_are_all_there():
+    """The page on them has a line for each keyword of fix spot."""
+    syntax = (ROOT / "lammps-package" / "doc" / "fix_spot.rst").read_text().partition("* keyword = ")[2].partition("\n\n")[0]
+    keywords = re.findall(r"\*(\w+)\*", syntax)
+    assert len(keywords) > 30
+    rows = [line for line in (ROOT / "docs" / "parameters.md").read_text().splitlines() if line.startswith("|")]
+    missing = [keyword for keyword in keywords if not any(f"| `{keyword}` |" in row for row in rows)]
+    assert not missing, f"docs/parameters.md has no line for {missing}"
+
+
+def test_figures_agree():
+    """The page on how good the model is has the README's table."""
+    table = (ROOT / "README.md").read_text().partition("## How good")[2].partition("\n## ")[0]
+    rows = [line for line in table.splitlines() if line.startswith("| ")]
+    assert len(rows) > 5
+    page = (ROOT / "docs" / "how-good-how-fast.md").read_text()
+    assert not [row for row in rows if row not in page]
 
 
 def test_commands_are_found():
