@@ -34,6 +34,7 @@ html_css_files = ["wider.css"]
 html_copy_source = False
 html_show_sphinx = False
 html_math_renderer = "mathml"  # drawn by browsers themselves: no network, no script
+highlight_language = "none"
 pygments_style = "default"
 
 
