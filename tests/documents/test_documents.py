@@ -114,6 +114,12 @@ def test_parameters_are_all_there():
     assert not missing, f"docs/parameters.md has no line for {missing}"
 
 
+def test_changes_are_of_this_version():
+    version = (ROOT / "VERSION").read_text().strip()
+    newest = re.search(r"^## (\S+?),? ", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE).group(1)
+    assert newest == version
+
+
 def test_figures_agree():
     """The page on how good the model is has the README's table."""
     table = (ROOT / "README.md").read_text().partition("## How good")[2].partition("\n## ")[0]
