@@ -20,6 +20,7 @@ namespace {
 
 constexpr double cell_of_slice = 0.25;  // diameters
 constexpr int most_cells = 600;         // of a slice, along each axis
+constexpr double beside = 1.0;  // of it on each side of the simulation box, so that walls there are seen (diameters)
 constexpr std::int64_t ways_kept = 12;  // of the spots that are born first
 constexpr std::size_t most_moves = 20'000'000;
 constexpr double climbs = 4.0;  // so often spots could climb from outlet to surface at v_s, at most
@@ -101,20 +102,21 @@ void list(std::ostream& out, const Values& values, const Write& write) {
 /// An upright slice through a place, across x (0) or y (1): the inside on a grid, and the grains that it cuts.
 void write_slice(std::ostream& out, const DryRun& run, int across, const Vector3& place) {
   const int along = 1 - across;
-  const auto cells = [&](int axis) {
-    return std::clamp(static_cast<int>((run.high[axis] - run.low[axis]) / (cell_of_slice * run.diameter)), 1,
-                      most_cells);
+  const double margin = beside * run.diameter;
+  const double low[] = {run.low[along] - margin, run.low[2]}, high[] = {run.high[along] + margin, run.high[2]};
+  const auto cells = [&](int k) {
+    return std::clamp(static_cast<int>((high[k] - low[k]) / (cell_of_slice * run.diameter)), 1, most_cells);
   };
-  const int columns = cells(along), rows = cells(2);
+  const int columns = cells(0), rows = cells(1);
   out << "{\"across\": \""
-      << "xy"[across] << "\", \"at\": " << place[across] << ", \"low\": [" << run.low[along] << ", " << run.low[2]
-      << "], \"high\": [" << run.high[along] << ", " << run.high[2] << "],\n\"inside\": [";
+      << "xy"[across] << "\", \"at\": " << place[across] << ", \"low\": [" << low[0] << ", " << low[1]
+      << "], \"high\": [" << high[0] << ", " << high[1] << "],\n\"inside\": [";
   Vector3 centre = place;
   for (int row = 0; row < rows; ++row) {
-    centre.z() = run.low[2] + (row + 0.5) * (run.high[2] - run.low[2]) / rows;
+    centre.z() = low[1] + (row + 0.5) * (high[1] - low[1]) / rows;
     out << (row == 0 ? "\"" : ",\n\"");
     for (int column = 0; column < columns; ++column) {
-      centre[along] = run.low[along] + (column + 0.5) * (run.high[along] - run.low[along]) / columns;
+      centre[along] = low[0] + (column + 0.5) * (high[0] - low[0]) / columns;
       out << (run.container->contains(centre) ? '1' : '0');
     }
     out << '"';

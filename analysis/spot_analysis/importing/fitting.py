@@ -116,6 +116,8 @@ def _cone_and_cylinder(positions, base):
     radius_at = lambda height, wall: (wall - height * normal[1]) / normal[0]
     shoulder = (end + 0.5 - (ring + 0.5) * normal[0]) / normal[1]
     below = (z > base) & (z < shoulder - 1)
+    if not below.any():
+        raise AnalysisError("--fit cone-and-cylinder: below the cylinder the packing gets no narrower; try --fit cylinder")
     width = np.pi * (max(radius_at(base, end), 0) + ring) / normal[0]  # on average, for each length along z
     end, coverage = _outermost((r * normal[0] + z * normal[1])[below], z[below], base, shoulder, width)
     shoulder = (end + 0.5 - (ring + 0.5) * normal[0]) / normal[1]

@@ -10,8 +10,8 @@ from ..base.errors import AnalysisError
 
 DEEPEST = 0.3  # d: deeper overlaps are no packing at rest
 FARTHEST = 0.5  # d that a grain may be moved
-SWEEPS = 500
-SPARE = 0.05  # of the bound: pairs are pushed so much farther apart than to it, or they would come to it only in the end
+SWEEPS = 1000
+SPARE = 0.25  # of the bound: pairs are pushed so much farther apart, which takes fewer sweeps
 
 
 @dataclass(frozen=True)
@@ -46,17 +46,19 @@ def relax(positions, diameter, bound, walls=None, progress=lambda text: None):
     if before > DEEPEST:
         raise AnalysisError(f"grains {one + 1} and {other + 1} (in the file's order of ids or lines) overlap by {before:.2f} d, more than "
                             f"{DEEPEST} d: no packing at rest; is the diameter {diameter:g}, in the unit of the positions?")
-    now, target, sweep = positions, (1 - SPARE) * bound, 0
+    now, target = positions, (1 - SPARE) * bound
     for sweep in range(SWEEPS + 1):
-        inside = walls.inside(now, (0.5 - bound) * diameter) if walls else now
-        pairs, depths = _overlapping(inside, diameter, bound)
-        if not len(pairs) and (walls is None or np.array_equal(inside, now)):
+        pairs, depths = _overlapping(now, diameter, bound)
+        outside = walls is not None and walls.distances(now).min() < (0.5 - bound) * diameter
+        if not len(pairs) and not outside:
             break
-        now = inside + _pushes(inside, pairs, depths - target, diameter)
+        now = now + _pushes(now, pairs, depths - target, diameter)
+        if walls is not None:
+            now = walls.inside(now, (0.5 - target) * diameter)
         progress(f"overlaps are pushed apart, sweep {sweep}, the largest {depths.max(initial=0):.3f} d")
     after = deepest_pair(now, diameter)[0]
     moved = float(np.linalg.norm(now - positions, axis=1).max() / diameter)
-    if after > bound or moved > FARTHEST:
+    if after > bound or outside or moved > FARTHEST:
         raise AnalysisError(f"overlaps of up to {before:.3f} d do not go below {bound:g} d without moving grains {moved:.2f} d (at most "
                             f"{FARTHEST} d, {SWEEPS} sweeps): give a smaller --diameter, or relax the packing by DEM with stiffer grains")
     return Relaxed(now, before, after, moved, sweep)

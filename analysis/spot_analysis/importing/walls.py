@@ -46,25 +46,27 @@ class Walls:
     base: float = None
     orifice: tuple = None
 
+    def _over_orifice(self, positions):
+        return np.hypot(positions[:, 0] - self.orifice[0], positions[:, 1] - self.orifice[1]) < self.orifice[2]
+
     def distances(self, positions):
-        """(n, walls) from each wall to a centre, positive inside; lines count above the base only."""
+        """(n,) from the nearest wall, or the base, to a centre, positive inside; infinite in and below the orifice."""
         found = [plane[3] - positions @ plane[:3] for plane in self.planes]
         if len(self.lines):
             r = np.hypot(positions[:, 0] - self.axis[0], positions[:, 1] - self.axis[1])
             found += [line[2] - r * line[0] - positions[:, 2] * line[1] for line in self.lines]
-        return np.stack(found, axis=1) if found else np.full((len(positions), 1), np.inf)
+        if self.base is None:
+            return np.min(found, axis=0)
+        height = positions[:, 2] - self.base
+        over = self._over_orifice(positions)
+        return np.where(over & (height < 0), np.inf, np.min([*found, np.where(over, np.inf, height)], axis=0))
 
     def sticking_out(self, positions, diameter):
-        """(n,) how far a grain reaches beyond any wall (d), negative inside; those below the base do nowhere."""
-        found = 0.5 - self.distances(positions).min(axis=1) / diameter
-        if self.base is not None:
-            over = np.hypot(positions[:, 0] - self.orifice[0], positions[:, 1] - self.orifice[1]) < self.orifice[2]
-            floor = np.where(over, -np.inf, 0.5 - (positions[:, 2] - self.base) / diameter)
-            found = np.where(positions[:, 2] < self.base - diameter, -np.inf, np.maximum(found, floor))
-        return found
+        """(n,) how far a grain reaches beyond any wall or the base (d), negative inside."""
+        return 0.5 - self.distances(positions) / diameter
 
     def inside(self, positions, inset):
-        """Positions (n, 3) moved along the walls' normals to be at least ``inset`` from each; as they are where they were."""
+        """Positions (n, 3) moved along the normals of walls and base to be at least ``inset`` from each."""
         for plane in self.planes:
             beyond = np.maximum(positions @ plane[:3] + inset - plane[3], 0)
             positions = positions - beyond[:, None] * plane[:3] if beyond.any() else positions
@@ -75,6 +77,9 @@ class Walls:
             if beyond.any():
                 radial = out / np.maximum(r, 1e-300)[:, None] * (beyond * line[0])[:, None]
                 positions = positions - np.column_stack([radial, beyond * line[1]])
+        if self.base is not None:
+            lifted = np.maximum(positions[:, 2], self.base + inset)
+            positions = np.column_stack([positions[:, :2], np.where(self._over_orifice(positions), positions[:, 2], lifted)])
         return positions
 
 

@@ -81,9 +81,11 @@ def deck(source, data, positions, diameter, walls, wall_words, orifice, outflow,
     walls : Walls, or None; then wall_words are those of the fix
     orifice : (x, y, z, R); outflow : grains in a time, or None for Beverloo's law; si : whether lengths are in m
     """
-    rate = "injection $(v_spots_a_grain*v_F)" if outflow else "beverloo ${g}"
-    line = f"variable  F equal {number(outflow)}              # grains that leave in a {'second' if si else 'unit of time'}: measured\n"
+    rate, measured = "beverloo ${g}", ""
+    if outflow:
+        time = "second" if si else "unit of time"
+        rate, measured = "injection $(v_spots_a_grain*v_F)", f"variable  F equal {number(outflow)}              # grains that leave in a {time}\n"
     return HEAD.format(source=os.path.basename(source), walls=walls.name if walls else "walls as given", diameter=number(diameter),
-                       unit=", m" if si else "", gravity=number(gravity), outflow=line if outflow else "", units="si" if si else "lj", folder=folder,
+                       unit=", m" if si else "", gravity=number(gravity), outflow=measured, units="si" if si else "lj", folder=folder,
                        data=data, fix=wall_words or fix_words(walls, top_of(positions, diameter)), orifice=words(*orifice), rate=rate,
                        steps=steps)

@@ -4,14 +4,14 @@
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import EllipseCollection
-from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from .drawing import SPOT_COLOUR
 
 WALL, GRAIN, OUTLET, WAY = "#8d99a6", "#f1d9b0", "#2a9d4a", "#1d3557"
 HEIGHT, DPI = 8.0, 110  # inches, pixels an inch
-WIDEST = 14.0  # inches
+NARROWEST, WIDEST = 7.0, 14.0  # inches
 NEAR = 1.0  # d from the slice: live spots that are drawn
 
 
@@ -20,12 +20,11 @@ def draw(run, path):
     d = run["diameter"]
     slices = [_Slice(one, run) for one in run["slices"]]
     ratios = [one.width / one.height for one in slices]
-    wide = min(HEIGHT * sum(ratios) + 2.0, WIDEST)
+    wide = min(max(HEIGHT * sum(ratios) + 2.0, NARROWEST), WIDEST)
     figure = Figure(figsize=(wide, HEIGHT + 0.6), dpi=DPI, layout="constrained")
     for axis, one in zip(figure.subplots(1, len(slices), width_ratios=ratios, squeeze=False)[0], slices):
         one.draw(axis, d)
-    figure.suptitle("Dry run: grains cut by the slice (sand), live spots near it (red), whole ways of some spots (blue), outlets (green)",
-                    fontsize=8, wrap=True)
+    figure.suptitle("grains cut by the slice: sand    live spots near it: red    ways of the first spots: blue    outlets: green", fontsize=8)
     FigureCanvasAgg(figure).print_png(path)
 
 
@@ -58,8 +57,11 @@ class _Slice:
         return self.z[1] - self.z[0]
 
     def draw(self, axis, d):
-        axis.imshow(self.inside, origin="lower", extent=(self.low[0], self.high[0], self.low[1], self.high[1]), aspect="equal",
-                    cmap=ListedColormap([WALL, "white"]), vmin=0, vmax=1, interpolation="nearest")
+        x, z = (self.low[k] + (np.arange(cells) + 0.5) * (self.high[k] - self.low[k]) / cells for k, cells in enumerate(self.inside.shape[::-1]))
+        axis.set_aspect("equal")
+        axis.set_facecolor(WALL)
+        axis.contourf(x, z, self.inside, levels=[0.5, 1.5], colors=["white"])
+        axis.xaxis.set_major_locator(MaxNLocator(max(2, int(self.width / self.height * 10)), integer=True))
         size = np.ones(len(self.grains))
         axis.add_collection(EllipseCollection(size, size, 0 * size, units="x", offsets=self.grains, transOffset=axis.transData,
                                               facecolors=GRAIN, edgecolors="#b08d57", linewidths=0.3))
@@ -71,4 +73,4 @@ class _Slice:
             centre, half = np.array(outlet["centre"]) / d, outlet["half_widths"][self.along] / d
             axis.plot(centre[self.along] + np.array([-half, half]), [centre[2]] * 2, color=OUTLET, linewidth=3, solid_capstyle="butt")
         axis.set(xlim=(self.low[0], self.high[0]), ylim=self.z, xlabel=f"{'xy'[self.along]} (d)", ylabel="z (d)",
-                 title=f"{'xy'[self.across]} = {self.at:.3g} d")
+                 title=f"{'xy'[self.across]} = {self.at:.1f} d")

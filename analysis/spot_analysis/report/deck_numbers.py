@@ -49,7 +49,7 @@ def numbers(run, tau):
     narrowest = min(2 * min(outlet["half_widths"]) / d for outlet in run["outlets"])
     parabolic = run["profile"] == "parabolic"
     rows = [
-        Row("grains", run["grains"], "", None, 3e7, "more than any run so far"),
+        Row("grains", run["grains"], "", None, 3e7, "what a restart file holds"),
         Row("diameter d", d, "length"),
         Row("tau = sqrt(d/g)", tau, time),
         Row("narrowest outlet", narrowest, "d", 6, 12, "6.5 and 8 were compared with DEM; narrower ones clog"),
@@ -90,7 +90,7 @@ def table(rows):
         span = f"{low} to {high}" if low and high else f"up to {high}" if high else f"from {low}" if low else ""
         cells.append(("!" if row.fits is False else "", row.name, _text(row.value), row.unit, span, row.note))
     widths = [max(len(line[column]) for line in cells) for column in range(len(cells[0]))]
-    lines = ["  ".join(text.ljust(width) for text, width in zip(line, widths)).rstrip() for line in cells]
+    lines = [f"{line[0]:1} " + "  ".join(text.ljust(width) for text, width in zip(line[1:], widths[1:])).rstrip() for line in cells]
     outside = [row.name for row in rows if row.fits is False]
     return "\n".join(lines + [f"outside the range in which the model was compared with DEM: {', '.join(outside)}"] * bool(outside))
 
