@@ -194,6 +194,13 @@ def test_a_box_is_neither_cylinder_nor_hopper(shape):
         fitting.fit(shape, silo, D, 0.0)
 
 
+def test_walls_by_words_of_the_fix(tmp_path):
+    source = write_text(tmp_path / "bare.txt", rows_text(TEN, 0.5))
+    words = "walls add block -4 4 -4 4 0 9"
+    deck = imported(tmp_path / "out", source, "--walls", words, *"--orifice 0 0 0 2 --beverloo --run 7".split())[4]
+    assert f"fix       drain all spot {words} &" in deck and deck.endswith("run       7\n")
+
+
 def test_sizes(tmp_path, monkeypatch, capsys):
     def source(spread):
         return write_text(tmp_path / "sizes.data", data_text(TEN, 1 + spread * np.linspace(-1, 1, 10)))

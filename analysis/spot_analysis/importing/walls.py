@@ -85,8 +85,8 @@ class Walls:
 
 def box(x_low, x_high, y_low, y_high):
     planes = np.array([[-1, 0, 0, -x_low], [1, 0, 0, x_high], [0, -1, 0, -y_low], [0, 1, 0, y_high]], dtype=float)
-    return Walls("box", (x_low, x_high, y_low, y_high), planes, None, np.zeros((0, 3)), tuple(f"the wall at {axis} = {place:.6g}" for axis, place in
-                                                                                          zip("xxyy", (x_low, x_high, y_low, y_high))))
+    parts = tuple(f"the wall at {axis} = {place:.6g}" for axis, place in zip("xxyy", (x_low, x_high, y_low, y_high)))
+    return Walls("box", (x_low, x_high, y_low, y_high), planes, None, np.zeros((0, 3)), parts)
 
 
 def cylinder(x, y, radius):
@@ -99,7 +99,8 @@ def cone_and_cylinder(x, y, low, radius, base, shoulder):
     normal = np.array([shoulder - base, low - radius]) / slant
     lines = np.array([[*normal, low * normal[0] + base * normal[1]], [1.0, 0.0, radius]])
     angle = np.degrees(np.arctan2(radius - low, shoulder - base))
-    return Walls("cone", (x, y, low, radius, base, shoulder), np.zeros((0, 4)), (x, y), lines, (f"the cone of {angle:.4g} degrees", f"the cylinder of radius {radius:.6g}"))
+    parts = f"the cone of {angle:.4g} degrees", f"the cylinder of radius {radius:.6g}"
+    return Walls("cone", (x, y, low, radius, base, shoulder), np.zeros((0, 4)), (x, y), lines, parts)
 
 
 def around(walls, orifice, diameter):

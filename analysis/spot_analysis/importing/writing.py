@@ -9,6 +9,7 @@ from ..base.errors import AnalysisError
 from .walls import fix_words, number, words
 
 ROOM_BELOW, ROOM_ABOVE, ROOM_BESIDE = 10, 5, 1  # d, of the simulation box beyond outlet, grains and walls
+ROOM_FOR_WALLS = 10  # d beside grains, where nobody has said how far away walls are
 HEAD = """# Made by spot-import from {source}: {walls}.
 variable  d equal {diameter}              # grain diameter{unit}
 variable  g equal {gravity}
@@ -52,7 +53,8 @@ def write_data(path, positions, diameter, density, walls, outlet):
 
     walls : Walls, or None where only their words are known; outlet : its height
     """
-    low, high = positions.min(axis=0) - diameter, positions.max(axis=0) + diameter
+    room = diameter * (ROOM_BESIDE if walls else ROOM_FOR_WALLS)
+    low, high = positions.min(axis=0) - room, positions.max(axis=0) + room
     low[2], high[2] = min(low[2], outlet - ROOM_BELOW * diameter), top_of(positions, diameter)
     for axis, (start, end) in enumerate(extent(walls)):
         low[axis] = min(low[axis], start - ROOM_BESIDE * diameter)
