@@ -92,7 +92,8 @@ def test_the_picture_has_what_the_title_says(tmp_path, deck):
 
 
 @pytest.mark.parametrize("code, reason", [
-    ("print('ERROR: fix spot: grain 5 is outside (/tmp/x/fix_spot.cpp:371)\\nLast command: run 5')\nsys.exit(1)", "in.deck: fix spot: grain 5 is outside\n"),
+    ("print('ERROR: fix spot: grain 5 is outside (/tmp/x/fix_spot.cpp:371)\\nLast command: run 5')\nsys.exit(1)",
+     "in.deck: fix spot: grain 5 is outside\n"),
     ("print('ERROR on proc 0: no (src/a.cpp:3)')\nsys.exit(1)", "in.deck: no\n"),
     ("pass", "in.deck: ends without a run of a fix spot\n")])
 def test_a_bad_deck_ends_with_one_line(tmp_path, deck, code, reason):

@@ -68,9 +68,11 @@ class _Slice:
         near = self.live[abs(self.live[:, self.across] - self.at) < NEAR]
         axis.plot(near[:, self.along], near[:, 2], ".", color=SPOT_COLOUR, markersize=1.5, alpha=0.6)
         for way in self.ways:
-            axis.plot(way[:, self.along], way[:, 2], color=WAY, linewidth=0.8, alpha=0.7)
+            x = way[:, self.along]
+            jumps = np.flatnonzero(abs(np.diff(x)) > self.width / 2) + 1  # to the other side of a silo that repeats
+            axis.plot(np.insert(x, jumps, np.nan), np.insert(way[:, 2], jumps, np.nan), color=WAY, linewidth=0.8, alpha=0.7)
         for outlet in self.outlets:
             centre, half = np.array(outlet["centre"]) / d, outlet["half_widths"][self.along] / d
             axis.plot(centre[self.along] + np.array([-half, half]), [centre[2]] * 2, color=OUTLET, linewidth=3, solid_capstyle="butt")
         axis.set(xlim=(self.low[0], self.high[0]), ylim=self.z, xlabel=f"{'xy'[self.along]} (d)", ylabel="z (d)",
-                 title=f"{'xy'[self.across]} = {self.at:.1f} d")
+                 title=f"{'xy'[self.across]} = {round(self.at, 1) + 0.0:g} d")
