@@ -14,7 +14,7 @@ from . import walls
 LAYER = 0.02  # d: centres of grains at a wall are this close together, across it, at its outermost
 AT_WALL = 0.1  # d from the outermost: grains that touch the wall
 STRAYS = 0.01  # grains per d^2 of wall that may lie beyond it
-FEWEST = 0.3  # grains per d^2 that a wall has at it, in each third of its height; between walls where they were poured, 0.6 to 1
+FEWEST = 0.3  # grains per d^2 that a wall has at it, in each third of its height; those of the packings in examples have 0.43 to 1
 THIRDS = 3
 DIGITS = 4  # of places of walls (d)
 CONE = (0.05, 0.999)  # normals along r of what may be a cone: no floor, no cylinder
