@@ -8,12 +8,15 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "input.h"
 #include "memory.h"
 #include "modify.h"
 #include "region.h"
 #include "update.h"
 #include "utils.h"
+#include "variable.h"
 
+#include "dry_run.h"
 #include "find_region.h"
 #include "grain_delivery.h"
 #include "mpi_communicator.h"
@@ -32,6 +35,7 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <fstream>
 #include <mutex>
 #include <unordered_map>
 
@@ -94,6 +98,9 @@ void count_hash(std::vector<std::int64_t> &sums, std::uint64_t hash, int sign) {
 std::string lost(std::int64_t grain) {
   return message("grain ", grain, " was lost by LAMMPS: make the simulation box larger");
 }
+
+/// A variable of this name, with a file's, asks for a dry run.
+constexpr const char *DRY_RUN = "spot_dry_run";
 
 enum BoundaryKind { PERIODIC = 0, FIXED = 1 };  // as in domain.h
 
@@ -366,9 +373,35 @@ void FixSpot::init() {
     check_box();
     make_container();
     if (model->saved) require_same_settings(*model->saved, model->command.settings());
+    if (input->variable->find(DRY_RUN) >= 0) dry_run();
   } catch (const spot::Error &e) {
     error->all(FLERR, message("fix spot: ", e.what()));
   }
+}
+
+/// Instead of the run: here, before LAMMPS opens the files of dumps and so empties those of a run before.
+void FixSpot::dry_run() {
+  if (comm->nprocs > 1)
+    error->all(FLERR, message("fix spot: a dry run, with the variable ", DRY_RUN, ", is for 1 MPI rank"));
+  const std::string path = input->variable->retrieve(DRY_RUN);
+  if (!model->drainage) make_drainage();
+  const std::vector<spot::Grain> grains = model->drainage->grains();
+  const double *low = domain->boxlo, *high = domain->boxhi;
+  const std::string text = describe({model->command,
+                                     model->container,
+                                     grains,
+                                     model->diameter,
+                                     model->window,
+                                     update->dt,
+                                     update->nsteps,
+                                     update->unit_style,
+                                     static_cast<std::size_t>(memory_usage()),
+                                     {low[0], low[1], low[2]},
+                                     {high[0], high[1], high[2]}});
+  std::ofstream file(path);
+  if (!(file << text).flush()) error->all(FLERR, message("fix spot: cannot write ", path));
+  utils::logmesg(lmp, message("fix spot: a dry run, written to ", path, "\n"));
+  error->done(0);
 }
 
 /// Once: what 'beverloo' has made of the outlets, and where not to trust it.

@@ -58,6 +58,7 @@ class FixSpot : public Fix {
   std::unique_ptr<Model> model;
 
   void check_run();
+  void dry_run();
   void check_grains();
   void choose_window();
   void go_on_with_saved_window();

@@ -50,6 +50,18 @@ def test_time_and_dumps(study, tmp_path):
     assert (tmp_path / "out" / "alpha_1.0.1" / "scene.json").exists()
 
 
+def test_runs_with_other_included_files_are_others(tmp_path):
+    from spot_analysis.commands.deck_run import settings_of
+
+    deck, beads = tmp_path / "in.deck", tmp_path / "beads.lmp"
+    deck.write_text("include beads.lmp # numbers\ninclude ${parameters}\nrun 1\n")
+    beads.write_text("variable radius index 3\n")
+    first = settings_of(str(deck), {})
+    assert settings_of(str(deck), {}) == first
+    beads.write_text("variable radius index 4\n")
+    assert settings_of(str(deck), {}) != first
+
+
 def test_failing_runs_are_refused(study, tmp_path):
     _, options, _ = study
     done = script("one_factor.py", options[0], "-o", tmp_path, "--seeds", 1,

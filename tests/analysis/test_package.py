@@ -72,5 +72,11 @@ def test_commands(installed, tmp_path):
     assert (tmp_path / "out" / "report.html").exists()
     assert run(installed / "spot-render", tmp_path, "-o", tmp_path / "a.png", "--slice", "-1", "1") == ""
     assert (tmp_path / "a.png").exists()
+    (tmp_path / "beads.txt").write_text("0 0 0.5 0.5\n0 1 0.5 0.5\n")
+    words = [tmp_path / "beads.txt", *"--box -2 2 -2 2 --orifice 1 --lammps-files".split(), SOURCES / "lammps-package", "-o", tmp_path / "own"]
+    assert "2 grains of 1 m" in run(installed / "spot-import", *words)
+    assert f"include   {SOURCES}/lammps-package/glass-beads.lmp" in (tmp_path / "own" / "in.spot").read_text()
+    absent = subprocess.run([installed / "spot-check", tmp_path / "absent"], capture_output=True, text=True)
+    assert absent.returncode == 1 and absent.stderr == f"error: {tmp_path / 'absent'}: no such file\n"
     refused = subprocess.run([installed / "spot-calibrate", tmp_path / "a.npz"], capture_output=True, text=True)
     assert refused.returncode == 1 and refused.stderr.startswith("error: too few snapshots")

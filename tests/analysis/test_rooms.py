@@ -9,7 +9,7 @@ import pytest
 from conftest import ANALYSIS
 
 PACKAGE = ANALYSIS / "spot_analysis"
-ROOMS = ("commands", "rendering", "report", "calibration", "statistics", "reading", "base")  # from top to bottom
+ROOMS = ("commands", "importing", "rendering", "report", "calibration", "statistics", "reading", "base")  # from top to bottom
 LONGEST = 150  # lines
 MODULES = {path.relative_to(PACKAGE).with_suffix("").parts: path for path in sorted(PACKAGE.rglob("*.py"))
            if path.name != "__init__.py"}

@@ -56,10 +56,15 @@ def deck_text(deck, parameter_file, duration, words):
     if len(fixes) != 1:
         raise CalibrationError(f"{deck}: {len(fixes)} commands 'fix ID group spot' where one was expected")
     commands[fixes[0]] += f" {words}"
-    place = next((place for place, command in enumerate(commands)
-                  if command.split()[:1] == ["variable"] and command.split()[1:2][0] in ("profile", *IN_THE_DECK)), fixes[0])
+    place = next((place for place, command in enumerate(commands) if _sets_parameters(command.split())), fixes[0])
     return "\n".join([*commands[:place], f"include {parameter_file}", "variable time delete",
                       f"variable time equal {duration:g}*v_tau", *commands[place:], ""])
+
+
+def _sets_parameters(words):
+    """Is this a command that sets the first of the parameters, or includes the file that sets them?"""
+    return words[:1] == ["variable"] and words[1:2][0] in ("profile", *IN_THE_DECK) or \
+        words[:1] == ["include"] and os.path.basename(words[1]) == "glass-beads.lmp"
 
 
 def run_deck(deck, lmp, variables, folder, duration, words, progress):

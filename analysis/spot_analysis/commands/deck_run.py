@@ -34,11 +34,22 @@ def remove(dumps):
 
 
 def settings_of(deck, variables, times=None):
-    """One line that two runs share if they are the same: the deck's text, its variables, the times that are measured."""
-    with open(deck, "rb") as handle:
-        text = hashlib.sha256(handle.read()).hexdigest()
+    """One line that two runs share if they are the same: the deck's text, with the files that it includes by name, its variables,
+    the times that are measured."""
+    text = hashlib.sha256(b"".join(_texts(deck))).hexdigest()
     chosen = None if times is None else [f"{time:.2f}" for time in times]
     return json.dumps({"deck": text, "variables": variables, "times": chosen}, sort_keys=True)
+
+
+def _texts(deck):
+    with open(deck, "rb") as handle:
+        text = handle.read()
+    yield text
+    for line in text.decode(errors="replace").splitlines():
+        path = os.path.join(os.path.dirname(deck), *line.split()[1:2])
+        if line.split()[:1] == ["include"] and os.path.isfile(path):
+            with open(path, "rb") as handle:
+                yield handle.read()
 
 
 def kept(stored, settings, label, make, concepts=run_statistics.CONCEPTS, times=None, keep_dumps=False):

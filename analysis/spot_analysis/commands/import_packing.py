@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Make a data file and a deck of fix spot from a packing of LIGGGHTS, LAMMPS, YADE, or plain columns."""
+
+import os
+
+import numpy as np
+
+from ..base.errors import AnalysisError
+from ..base.progress import Progress
+from ..importing import walls as shapes
+from ..importing import writing
+from ..importing.fitting import fit
+from ..importing.overlaps import relax
+from ..importing.turning import direction, turned
+from ..reading.packing_file import read_packing
+from . import command_line
+from .import_options import UNITS, parse_arguments
+
+EQUAL, NEARLY_EQUAL = 1e-6, 0.01  # spreads of diameters: what fix spot takes, what --equal-sizes makes equal
+STICKS_OUT, THROUGH = 0.01, 0.3  # d beyond a wall: grains that are counted, and that are refused
+GRAINS = (1e-5, 0.1)  # m that a grain's diameter is likely to be between
+DENSITY = 2500.0  # kg/m3, glass
+
+
+def one_diameter(options, grains, scale):
+    """Of all grains, in the deck's unit; raises AnalysisError where theirs differ too much."""
+    if options.diameter:
+        return options.diameter
+    if grains.diameters is None:
+        raise AnalysisError(f"{options.packing}: no diameters or radii in it: give --diameter")
+    low, mean, high = (float(function(grains.diameters)) for function in (np.min, np.mean, np.max))
+    spread = max(high - mean, mean - low) / mean
+    if spread <= EQUAL:
+        return mean * scale
+    sizes = f"diameters are {low * scale:.6g} to {high * scale:.6g}, up to {100 * spread:.2g} % off their mean"
+    if spread > NEARLY_EQUAL:
+        raise AnalysisError(f"{options.packing}: {sizes}; fix spot takes equal grains, and --equal-sizes makes equal what is within 1 %")
+    if not options.equal_sizes:
+        raise AnalysisError(f"{options.packing}: {sizes}; fix spot takes equal grains: --equal-sizes gives all of them the mean")
+    print(f"sizes: {sizes}; all have {mean * scale:.6g} now")
+    return mean * scale
+
+
+def placed(options, grains, diameter, scale):
+    """Positions (n, 3) in the deck's unit, turned and shifted."""
+    positions = turned(grains.positions * scale, direction(options.gravity)) + np.array(options.shift)
+    if options.floor is not None:
+        floor = positions[:, 2].min() - diameter / 2 if options.floor == "auto" else options.floor
+        positions = positions - [0, 0, floor]
+        print(f"floor: z = {floor:.6g} is 0 now")
+    return positions
+
+
+def walls_of(options, positions, diameter):
+    """Walls, or None where only their words are known, and (x, y, z, R) of the orifice."""
+    height = options.orifice[2] if len(options.orifice) == 4 else 0.0
+    if options.walls:
+        return None, tuple(options.orifice)
+    if options.fit:
+        found, coverage = fit(options.fit, positions, diameter, height)
+        print("fit: " + "; ".join(f"{part}, {share:.2f} grains at it for each d^2" for part, (_, share) in zip(found.parts, coverage)))
+    elif options.box:
+        found = shapes.box(*options.box)
+    elif options.cylinder:
+        found = shapes.cylinder(*options.cylinder)
+    else:
+        x, y, low, radius, high = options.cone
+        found = shapes.cone_and_cylinder(x, y, low, radius, height, height + high)
+    middle = found.axis or ((found.numbers[0] + found.numbers[1]) / 2, (found.numbers[2] + found.numbers[3]) / 2)
+    orifice = tuple(options.orifice) if len(options.orifice) == 4 else (*middle, 0.0, options.orifice[0])
+    return shapes.around(found, orifice, diameter), orifice
+
+
+def check_places(walls, positions, diameter):
+    """Say how many grains stick out of the walls; raises AnalysisError where one is outside."""
+    out = walls.sticking_out(positions, diameter)
+    print(f"walls: {np.count_nonzero(out > STICKS_OUT)} of {len(out)} grains stick out by more than {STICKS_OUT} d, "
+          f"the farthest by {max(out.max(), 0):.3f} d")
+    if out.max() > THROUGH:
+        grain, where = int(out.argmax()), " ".join(f"{value:.6g}" for value in positions[out.argmax()])
+        raise AnalysisError(f"{np.count_nonzero(out > THROUGH)} grains stick out of the walls or the base by more than {THROUGH} d, such as grain "
+                            f"{grain + 1} at {where} by {out.max():.2f} d: other walls, another --floor or --shift, or take these grains out")
+
+
+def import_packing():
+    options = parse_arguments()
+    folder = writing.shared_files(options.lammps_files)
+    grains = read_packing(options.packing, options.step, options.columns)
+    scale = options.scale or UNITS[options.length_unit or "m"]
+    diameter = one_diameter(options, grains, scale)
+    unit = "" if options.scale else " m"
+    print(f"{options.packing}: {len(grains.positions)} grains of {diameter:.6g}{unit}, {grains.where}")
+    if not options.scale and not GRAINS[0] <= diameter <= GRAINS[1]:
+        command_line.print_warning(f"grains of {diameter:g} m: is the file in another unit? (--length-unit mm)")
+    positions = placed(options, grains, diameter, scale)
+    walls, orifice = walls_of(options, positions, diameter)
+    if walls:
+        check_places(walls, positions, diameter)
+    relaxed = relax(positions, diameter, options.overlap, walls, Progress("import", terminal_only=True))
+    print(f"overlaps: the largest was {relaxed.before:.4f} d and is {relaxed.after:.4f} d, after {relaxed.sweeps} sweeps; no grain went "
+          f"farther than {relaxed.moved:.4f} d")
+    save(options, grains, relaxed.positions, diameter, walls, orifice, folder)
+
+
+def save(options, grains, positions, diameter, walls, orifice, folder):
+    os.makedirs(options.output, exist_ok=True)
+    data, deck = (os.path.join(options.output, name) for name in ("packing.data", "in.spot"))
+    writing.write_data(data, positions, diameter, options.density or grains.density or DENSITY, walls, orifice[2])
+    with open(deck, "w", encoding="utf-8") as out:
+        out.write(writing.deck(options.packing, "packing.data", positions, diameter, walls, options.walls, orifice, options.outflow,
+                               options.g or 9.81, options.run, folder, not options.scale))
+    print(f"{data} and {deck} are written: lmp -in in.spot, in that folder")
+
+
+def main():
+    command_line.run(import_packing)
