@@ -33,25 +33,35 @@ Booleans held_of(const py::object& held, py::ssize_t n) {
   return all;
 }
 
-/// A body-centred cubic lattice whose grains fill 0.58, as in dense flow: two in a cube of 1.218 d, none in touch.
+/// Layers of a lattice along an axis, from wall to wall.
+struct Layers {
+  double first = 0.0, spacing = 0.0;
+  int count = 0;
+
+  Layers(double low, double high, double diameter, double least) {
+    const double room = high - low - diameter;
+    if (!(room / least < 1e4))
+      throw spot::InvalidParameter(spot::message("the block, from ", low, " to ", high, ", is too long"));
+    if (room < 0.0) return;
+    const int gaps = static_cast<int>(room / least);
+    count = gaps + 1;
+    spacing = gaps > 0 ? room / gaps : 0.0;
+    first = low + 0.5 * (diameter + (gaps > 0 ? 0.0 : room));
+  }
+};
+
+/// Body-centred: the places of a cubic lattice whose three numbers are all even or all odd.
 Doubles lattice(const std::array<double, 3>& low, const std::array<double, 3>& high, double diameter) {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     throw spot::InvalidParameter(spot::message("diameter is ", diameter, " but must be positive and finite"));
-  const double edge = 1.218 * diameter;
+  const double least = 0.58 * diameter;  // neighbours are sqrt(3) times as far apart: none in touch
+  const Layers x(low[0], high[0], diameter, least), y(low[1], high[1], diameter, least),
+      z(low[2], high[2], diameter, least);
   std::vector<double> all;
-  double in_block = 1.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) in_block *= std::max((high[axis] - low[axis]) / edge, 0.0);
-  if (!(in_block < 1e9)) throw spot::InvalidParameter(spot::message("a block of ", in_block, " cubes is too large"));
-  for (int corner = 0; corner < 2; ++corner) {
-    const double from = 0.5 * diameter + 0.5 * edge * corner;
-    const auto count = [&](std::size_t axis) {
-      return static_cast<int>(std::floor((high[axis] - 0.5 * diameter - low[axis] - from) / edge)) + 1;
-    };
-    for (int k = 0; k < count(2); ++k)
-      for (int j = 0; j < count(1); ++j)
-        for (int i = 0; i < count(0); ++i)
-          all.insert(all.end(), {low[0] + from + i * edge, low[1] + from + j * edge, low[2] + from + k * edge});
-  }
+  for (int k = 0; k < z.count; ++k)
+    for (int j = k % 2; j < y.count; j += 2)
+      for (int i = k % 2; i < x.count; i += 2)
+        all.insert(all.end(), {x.first + i * x.spacing, y.first + j * y.spacing, z.first + k * z.spacing});
   Doubles positions({static_cast<py::ssize_t>(all.size() / 3), py::ssize_t{3}});
   std::copy(all.begin(), all.end(), positions.mutable_data());
   return positions;
@@ -138,17 +148,17 @@ ValueError for another shape, or another kind of numbers, and for radii that are
       .def_property_readonly("held", &Packing::held, "(N,): those that never move.")
       .def_property_readonly("diameter", &Packing::diameter, "Of the largest grains (length); 0 if there are none.");
   module.def("lattice", &lattice, py::arg("low"), py::arg("high"), py::arg("diameter"),
-             R"(Centres, (N, 3), of grains that fill a block with the packing fraction of dense flow, 0.58.
+             R"(Centres, (N, 3), of grains that fill a block as densely as a poured packing, with about 0.65.
 
 low, high: corners of the block, within which the whole grains are (length).
 diameter: of the grains (length).
 
-They stand on a body-centred cubic lattice, on which none are in touch. To try things out: a packing that was poured
-flows otherwise.
+They stand on a body-centred lattice, on which none are in touch. To try things out: a packing that was poured flows
+otherwise.
 
 >>> lattice((0, 0, 0), (2.3, 1, 1), 1.0)
-array([[0.5  , 0.5  , 0.5  ],
-       [1.718, 0.5  , 0.5  ]])
+array([[0.5, 0.5, 0.5],
+       [1.8, 0.5, 0.5]])
 
 ValueError unless the diameter is positive and finite.)");
 }
