@@ -109,9 +109,9 @@ SCENES = {
     "slot": ("box -8 8 -5 5 slot 0 0 0 6 8 beverloo 1.0", BOX, [Outlet.slot((0, 0, 0), (6, 8), gravity=1.0)], {}),
     "two outlets": ("box -8 8 -5 5 orifice -4.5 0 0 3 orifice 4 1 0 3.5 injection 100 200", BOX,
                     [Outlet.round((-4.5, 0, 0), 3.0, births=100.0), Outlet.round((4, 1, 0), 3.5, births=200.0)], {}),
-    "periodic": ("box -8 8 NULL NULL orifice 0 0 0 3 injection 300", Walls.box((-8, 8), (-5, 5), periodic="y"),
+    "periodic": ("box -8 8 NULL NULL orifice 0 0 0 3 injection 300", Walls.box((-8, 8), (-6, 6), periodic="y"),
                  [Outlet.round((0, 0, 0), 3.0, births=300.0)],
-                 {"box": "-12 12 -5 5 -4 30", "boundary": "f p f"}),
+                 {"box": "-12 12 -6 6 -4 30", "boundary": "f p f"}),
     "cylinder": ("cylinder 0 0 8 orifice 0 0 0 4 injection 300", Walls.cylinder(0, 0, 8),
                  [Outlet.round((0, 0, 0), 4.0, births=300.0)], {}),
     "shapes": ("walls add cone z 0 0 4 9 0 8 walls add cylinder z 0 0 9 8 20 walls cut sphere 5 0 7 1 "
@@ -120,22 +120,25 @@ SCENES = {
 }
 
 
+def packing_of(scene):
+    if scene == "periodic":
+        return lattice((-8, -6, 0), (8, 6, 9), 1.0)
+    if scene == "cylinder":
+        positions = lattice((-8, -8, 0), (8, 8, 9), 1.0)
+        return positions[np.hypot(*positions.T[:2]) <= 7.5]
+    if scene == "shapes":
+        positions = lattice((-9, -9, 0), (9, 9, 12), 1.0)
+        radius = 4.0 + np.minimum(positions[:, 2], 8.0) * 5 / 8 - 0.6
+        beside_sphere = np.linalg.norm(positions - (5, 0, 7), axis=1) >= 1.5
+        return positions[(np.hypot(*positions.T[:2]) <= radius) & beside_sphere]
+    return POSITIONS
+
+
 @needs_lmp
 @pytest.mark.parametrize("scene", SCENES)
 def test_same_bits_as_fix_spot(scene, tmp_path):
     deck, walls, outlets, options = SCENES[scene]
-    positions = POSITIONS
-    if scene == "periodic":  # the lattice goes from wall to wall: leave a gap across the period
-        positions = positions * [1.0, 0.97, 1.0]
-        positions = positions[np.arange(len(positions)) >= 0]
-    if scene == "cylinder":
-        positions = lattice((-8, -8, 0), (8, 8, 9), 1.0)
-        positions = positions[np.hypot(*positions.T[:2]) <= 7.5]
-    if scene == "shapes":
-        positions = lattice((-9, -9, 0), (9, 9, 12), 1.0)
-        radius = 4.0 + np.minimum(positions[:, 2], 8.0) * 5 / 8 - 0.6
-        positions = positions[(np.hypot(*positions.T[:2]) <= radius)
-                              & (np.linalg.norm(positions - (5, 0, 7), axis=1) >= 1.5)]
+    positions = packing_of(scene)
     parameters = beads(critical_fraction=0.55)
     window, steps = 0.04, 150
     there, ids = run_lmp(tmp_path, deck, positions, steps, window, model=MODEL.replace("0.602", "0.55"), **options)
@@ -229,8 +232,7 @@ def test_outflow_is_what_was_asked_for():
 def test_beverloo_is_the_formula():
     """Beverloo et al. (1961): 0.58 n sqrt(g) (D - 1.4 d)^(5/2), with n of a packing fraction of 0.58."""
     outflow = 0.58 * 0.58 / (np.pi / 6) * np.sqrt(9.81) * (8.0 - 1.4) ** 2.5
-    by_law = drain(PACKING, BOX, [Outlet.round((0, 0, 0), 4.0, gravity=9.81)], beads(speed=10.0, window=None) if False
-                   else beads(speed=10.0), 0.5)
+    by_law = drain(PACKING, BOX, [Outlet.round((0, 0, 0), 4.0, gravity=9.81)], beads(speed=10.0), 0.5)
     given = drain(PACKING, BOX, opening(outflow), beads(speed=10.0), 0.5)
     assert by_law.counters.moves == given.counters.moves and len(by_law.spots) == len(given.spots)
     with pytest.warns(UserWarning, match="may clog"):
@@ -243,16 +245,16 @@ def test_unequal_and_held_grains():
     held = np.zeros(len(PACKING), bool)
     held[np.argmin(np.linalg.norm(POSITIONS - (-6, 3, 5), axis=1))] = True
     ids = np.arange(len(PACKING)) * 10
-    d = drain(Packing(POSITIONS, radii, ids=ids, held=held), BOX, opening(), beads(critical_fraction=0.0), 6.0)
+    d = drain(Packing(POSITIONS, radii, ids=ids, held=held), BOX, opening(), beads(critical_fraction=0.0, dilatancy=0.0), 6.0)
     left = d.packing
     assert (left.radii == radii[left.ids // 10]).all() and (left.held == held[left.ids // 10]).all()
-    assert (left.positions[left.held] == POSITIONS[held]).all() or np.abs(left.positions[left.held] - POSITIONS[held]).max() < 1e-11
+    assert left.held.sum() == 1 and np.abs(left.positions[left.held] - POSITIONS[held]).max() < 1e-7  # but for the quantum
     assert len(d.drained) > 0
 
 
 def test_a_packing_goes_on_from_where_another_ended(one_thread):
     again = Packing(one_thread.packing.positions, one_thread.packing.radii, ids=one_thread.packing.ids)
-    d = Drainage(again, BOX, opening(), beads(largest_overlap=0.1, critical_fraction=0.0))
+    d = Drainage(again, BOX, opening(), beads(largest_overlap=0.1, critical_fraction=0.0, dilatancy=0.0))
     assert (d.packing.positions == one_thread.packing.positions).all()  # not a bit is lost
 
 
@@ -297,27 +299,29 @@ def test_ctrl_c_stops_at_a_whole_window():
 
 def test_other_threads_go_on_and_may_not_interfere():
     d = Drainage(PACKING, BOX, opening(), beads())
-    stop, counted, refused = threading.Event(), [0], []
+    stop, refused = threading.Event(), []
 
-    def count():
+    def look():
         while not stop.is_set():
-            counted[0] += 1
             try:
-                d.packing
+                assert len(d.packing) > 0
             except RuntimeError as error:
                 refused.append(str(error))
             time.sleep(0.0005)
 
-    thread = threading.Thread(target=count)
+    thread = threading.Thread(target=look)
     thread.start()
-    d.advance_to(6.0)
-    stop.set()
-    thread.join()
-    assert counted[0] > 3 and set(refused) == {"the drainage is running in another thread"}
+    try:
+        while not refused and d.time < 60.0:
+            d.advance_to(d.time + 1.0)
+    finally:
+        stop.set()
+        thread.join()
+    assert set(refused) == {"the drainage is running in another thread"}
 
 
 def test_a_collapse_has_a_class_of_its_own_and_ends_the_drainage():
-    d = Drainage(PACKING, BOX, opening(), beads(tolerance=1e9, influence=0.2, critical_fraction=0.0))
+    d = Drainage(PACKING, BOX, opening(), beads(tolerance=1e3, influence=0.02, critical_fraction=0.0, dilatancy=0.0))
     with pytest.raises(spotcore.CollapsedPacking, match="overlap by|left through the base"):
         d.advance_to(30.0)
     with pytest.raises(RuntimeError, match="has failed"):
