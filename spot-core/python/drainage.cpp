@@ -110,6 +110,8 @@ bool Drainage::advance_to(double until, const py::object& callback, std::optiona
   if (failed_) throw std::runtime_error("the drainage has failed and cannot go on");
   if (!std::isfinite(until) || until < 0.0 || until / window_ > 9e15)
     throw spot::InvalidParameter(spot::message("time is ", until, " but must be finite and not negative"));
+  if (until < time()) throw spot::InvalidParameter(spot::message("time is ", until, " but it is ", time(), " already"));
+  if (!callback.is_none() && PyCallable_Check(callback.ptr()) == 0) throw py::type_error("callback cannot be called");
   if (every && (!(*every > 0.0) || !std::isfinite(*every)))
     throw spot::InvalidParameter(spot::message("every is ", *every, " but must be positive and finite"));
   const std::int64_t last = whole_windows(until, window_);
@@ -129,7 +131,9 @@ bool Drainage::advance_to(double until, const py::object& callback, std::optiona
     }
     if (callback.is_none()) continue;
     const py::object answer = callback(progress(until));
-    if (!answer.is_none() && !answer.cast<bool>()) return false;
+    const int truth = answer.is_none() ? 1 : PyObject_IsTrue(answer.ptr());
+    if (truth < 0) throw py::error_already_set();
+    if (truth == 0) return false;
   }
   return true;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "spot/base/errors.hpp"
 
@@ -13,7 +14,9 @@ namespace spotcore {
 namespace {
 
 Doubles radii_of(const py::object& radius, py::ssize_t n) {
-  if (py::array::ensure(radius).ndim() > 0) return copy_of_numbers(radius, "radius", n);
+  const py::array one = py::array::ensure(radius);
+  if (!one || one.ndim() > 0 || std::string("fiu").find(one.dtype().kind()) == std::string::npos)
+    return copy_of_numbers(radius, "radius", n);
   Doubles radii(n);
   std::fill_n(radii.mutable_data(), n, radius.cast<double>());
   return radii;

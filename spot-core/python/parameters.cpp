@@ -27,7 +27,12 @@ void change(py::object& parameters, const py::kwargs& changes) {
     if (!py::hasattr(parameters, name) || PyCallable_Check(parameters.attr(name).ptr()) != 0 ||
         name.cast<std::string>() == "diameter")
       throw spot::InvalidParameter("there is no parameter '" + name.cast<std::string>() + "' to change");
-    parameters.attr(name) = value;
+    try {
+      parameters.attr(name) = value;
+    } catch (py::error_already_set& error) {
+      if (!error.matches(PyExc_TypeError)) throw;
+      throw spot::InvalidParameter(std::string(py::str(name)) + " cannot be " + std::string(py::repr(value)));
+    }
   }
 }
 

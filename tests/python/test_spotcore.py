@@ -273,6 +273,11 @@ def test_callback_stops():
     assert d.advance_to(6.0) is True
 
 
+def test_what_cannot_be_called_is_no_callback():
+    with pytest.raises(TypeError, match="callback cannot be called"):
+        Drainage(PACKING, BOX, opening(), beads()).advance_to(1.0, callback=3)
+
+
 def test_what_a_callback_raises_comes_out_and_the_drainage_goes_on(one_thread):
     d = Drainage(PACKING, BOX, opening(), beads())
 
@@ -337,6 +342,10 @@ def test_a_collapse_has_a_class_of_its_own_and_ends_the_drainage():
     ((POSITIONS.astype(str), 0.5), "positions is an array of <U"),
     ((POSITIONS.astype(object), 0.5), "positions is an array of object"),
     ((POSITIONS, [0.5, 0.5]), r"radius has shape \(2,\) but must have shape \(\d+,\)"),
+    ((POSITIONS, [[0.5], [0.5, 0.5]]), "radius cannot be made an array"),
+    (([[0.0, 0.0], [0.0]], 0.5), "positions cannot be made an array"),
+    ((POSITIONS, "thick"), "radius is an array of <U5"),
+    ((POSITIONS, None), "radius is an array of object"),
     ((POSITIONS, -0.5), "radius of grain 1 is -0.5"),
     ((POSITIONS, np.nan), "radius of grain 1 is nan"),
     ((POSITIONS, 0.5, np.ones(len(POSITIONS))), "ids is an array of float64 but must be one of integers"),
@@ -346,6 +355,12 @@ def test_a_collapse_has_a_class_of_its_own_and_ends_the_drainage():
 def test_arrays_of_another_shape_or_kind_are_refused(arguments, text):
     with pytest.raises(ValueError, match=text):
         Packing(*arguments)
+
+
+@pytest.mark.parametrize("radius", [1, np.float32(0.5), np.full((), 0.5), len(POSITIONS) * [0.5]])
+def test_a_radius_is_any_number_or_one_for_each_grain(radius):
+    packing = Packing(POSITIONS, radius)
+    assert packing.radii.shape == (len(POSITIONS),) and (packing.radii == np.ravel(radius)[0]).all()
 
 
 def test_arrays_are_copied_and_then_nobody_writes_them():
@@ -364,6 +379,10 @@ def with_nan(positions):
     positions = positions.copy()
     positions[3, 1] = np.nan
     return positions
+
+
+def one_thread_until(time):
+    return drain(PACKING, BOX, opening(), beads(), time)
 
 
 @pytest.mark.parametrize("make, text", [
@@ -385,6 +404,9 @@ def with_nan(positions):
     (lambda: Drainage(PACKING, BOX, opening(), Parameters.glass_beads(0.003, 1.0)), "diameter 0.003 but"),
     (lambda: Drainage(PACKING, BOX, opening(), beads()).advance_to(np.inf), "time is inf"),
     (lambda: Drainage(PACKING, BOX, opening(), beads()).advance_to(1.0, every=0.0), "every is 0"),
+    (lambda: one_thread_until(1.0).advance_to(0.5), "time is 0.5 but it is 0.896 already"),
+    (lambda: beads(seed=-1), "seed cannot be -1"),
+    (lambda: beads(speed="fast"), "speed cannot be 'fast'"),
     (lambda: Parameters.glass_beads(0.0, 1.0), "diameter is 0"),
     (lambda: Parameters.glass_beads(1.0, -1.0), "tau is -1"),
     (lambda: beads(friction=0.5), "no parameter 'friction'"),
