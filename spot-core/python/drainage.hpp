@@ -11,23 +11,11 @@
 #include "outlets.hpp"
 #include "packing.hpp"
 #include "parameters.hpp"
+#include "results.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
 #include "walls.hpp"
 
 namespace spotcore {
-
-/// How far a call has come.
-struct Progress {
-  double time, until;
-  std::int64_t grains, drained, spots;
-};
-
-/// Grains that have left, in the order in which they did.
-struct Drained {
-  std::vector<spot::Grain> grains;
-  std::vector<double> times;  // ends of the windows in which they left
-  std::vector<std::int64_t> outlets;
-};
 
 /// A packing that drains, for Python: the windowed driver, alone. Python's lock is released while windows run.
 class Drainage {
@@ -46,7 +34,7 @@ class Drainage {
 
   // All that follows throws std::runtime_error while windows run in another thread of Python.
   Packing packing() const;
-  std::vector<spot::Spot> spots() const { return quiet().spots(); }
+  Spots spots() const { return {quiet().spots()}; }
   const Drained& drained() const { return quiet(), drained_; }
   std::vector<std::int64_t> drained_through() const;
   spot::Counters counters() const { return quiet().total(); }

@@ -21,5 +21,5 @@ True
 from ._spotcore import (CollapsedPacking, Counters, Drainage, Drained, Outlet, Packing, Parameters, Progress, Shape,
                         Spots, Walls, __version__, drain, lattice)
 
-__all__ = ["CollapsedPacking", "Counters", "Drainage", "Drained", "Outlet", "Packing", "Parameters", "Progress", "Shape",
-           "Spots", "Walls", "__version__", "drain", "lattice"]
+__all__ = ["CollapsedPacking", "Counters", "Drainage", "Drained", "Outlet", "Packing", "Parameters", "Progress",
+           "Shape", "Spots", "Walls", "__version__", "drain", "lattice"]

@@ -6,8 +6,8 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["CollapsedPacking", "Counters", "Drainage", "Drained", "Outlet", "Packing", "Parameters", "Progress", "Shape",
-           "Spots", "Walls", "__version__", "drain", "lattice"]
+__all__ = ["CollapsedPacking", "Counters", "Drainage", "Drained", "Outlet", "Packing", "Parameters", "Progress",
+           "Shape", "Spots", "Walls", "__version__", "drain", "lattice"]
 
 __version__: str
 
