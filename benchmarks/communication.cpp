@@ -21,10 +21,10 @@
 
 #include "ranks_of_threads.hpp"
 #include "read_grains.hpp"
+#include "spot/drivers/defaults.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
 #include "spot/geometry/silos.hpp"
 #include "spot/walk/spot_walk.hpp"
-#include "spot_command.h"
 
 namespace {
 
@@ -126,7 +126,7 @@ spot::SpotParameters spot_parameters() {
   spots.profile = spot::InfluenceProfile::parabolic;
   spots.radius = 3.53;
   spots.influence = 2.5e-3;
-  spots.step_height = SpotCommand::step_height_in_diameters(Accuracy::normal);
+  spots.step_height = spot::step_height_in_diameters(spot::Accuracy::normal);
   spots.step_width = spot::step_width_for(1.35, spots.step_height);
   spots.speed = 2.4;
   spots.dilation = 0.03;
@@ -143,7 +143,7 @@ template <typename Start>
 WindowedDrainage drainage(const Start& start, const std::shared_ptr<spot::Communicator>& ranks) {
   const spot::SpotParameters spots = spot_parameters();
   return {spots,
-          SpotCommand::relaxation_of(Accuracy::normal, *spots.profile),
+          spot::relaxation_of(spot::Accuracy::normal, *spots.profile),
           spot::DrainageLimits{0.0},
           window,
           1,

@@ -28,7 +28,6 @@
 #include "spot/drivers/windowed_drainage.hpp"
 #include "spot/geometry/shaped_container.hpp"
 #include "spot/geometry/silos.hpp"
-#include "spot_calibration.h"
 #include "spot_command.h"
 
 #include <algorithm>
@@ -275,10 +274,7 @@ void FixSpot::choose_window() {
   const bool steps = update->nsteps > 0;
   double window = command.window.value_or(update->dt);
   if (!command.window && !*command.time_ordered) {
-    const double flow =
-        spot::WindowedDrainage::flow_through_orifice(command.spots, 1.0, model->diameter, command.outlets.outlets());
-    const double longest = std::min(calibration::climb_in_a_window * model->diameter / command.spots.speed,
-                                    calibration::flow_in_a_window / flow);
+    const double longest = spot::longest_window(command.spots, model->diameter, command.outlets.outlets());
     window = update->dt / std::ceil(update->dt / longest - 1e-9);
   }
   if (window != model->window) model->drainage.reset();  // in which there have been no windows yet

@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "outlet_command.h"
 
-#include <cmath>
 #include <memory>
 
+#include "spot/drivers/defaults.hpp"
 #include "spot/geometry/round_hole.hpp"
 #include "spot/geometry/slot.hpp"
 #include "words.h"
 
 using spot::InvalidParameter;
 using spot::message;
-
-namespace {
-
-/// Of flowing grains (docs/model.md). Beverloo's law is used with the bulk density.
-constexpr double packing_fraction = 0.58;
-
-double volume_of_grain(double diameter) { return 3.14159265358979323846 / 6.0 * diameter * diameter * diameter; }
-
-}  // namespace
 
 void OutletCommand::add(const spot::Outlet& outlet, const std::string& text) {
   outlets_.push_back(outlet);
@@ -102,8 +93,7 @@ std::optional<spot::Orifice> OutletCommand::single_orifice() const {
 
 spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, double diameter) const {
   std::vector<double> rates = rates_;
-  for (const double grains : predicted_outflow(diameter))
-    rates.push_back(grains * volume_of_grain(diameter) / spots.missing_volume(diameter));
+  for (const double grains : predicted_outflow(diameter)) rates.push_back(spot::births_for(grains, spots, diameter));
   std::vector<spot::RateSchedule> all;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     std::vector<spot::RateStep> steps;
@@ -118,9 +108,8 @@ spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, doub
 std::vector<double> OutletCommand::predicted_outflow(double diameter) const {
   std::vector<double> outflow;
   if (!gravity_) return outflow;
-  const double per_volume = packing_fraction / volume_of_grain(diameter);
   for (const spot::Outlet& outlet : outlets_) {
-    outflow.push_back(per_volume * std::sqrt(*gravity_) * outlet.hole->discharge(law_, diameter));
+    outflow.push_back(spot::predicted_outflow(*outlet.hole, law_, *gravity_, diameter));
     if (outflow.back() == 0.0)
       throw InvalidParameter(message("Beverloo's law predicts no outflow through the ", outlet.name(),
                                      ", which is not wider than ", law_.margin, " diameters of ", diameter));

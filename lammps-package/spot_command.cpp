@@ -7,9 +7,9 @@
 #include <map>
 
 #include "spot/base/errors.hpp"
-#include "spot_calibration.h"
 #include "words.h"
 
+using spot::Accuracy;
 using spot::InvalidParameter;
 using spot::message;
 
@@ -173,7 +173,7 @@ void require(bool given, const char* keyword, const char* what) {
 
 SpotCommand parse_spot_command(const std::vector<std::string>& list) {
   SpotCommand command;
-  command.spots.influence = calibration::influence;
+  command.spots.influence = spot::calibration::influence;
   Words words(list);
   while (!words.empty()) {
     const std::string keyword = words.keyword();
@@ -204,37 +204,21 @@ std::size_t modify_spot_command(SpotCommand& command, const std::vector<std::str
   return words.taken();
 }
 
-double SpotCommand::step_height_in_diameters(Accuracy accuracy) {
-  return accuracy == Accuracy::exact ? 0.1 : accuracy == Accuracy::normal ? 1.2 : 2.4;
-}
-
-spot::RelaxationParameters SpotCommand::relaxation_of(Accuracy accuracy, const spot::InfluenceProfile& profile) {
-  // Chosen from the curves of benchmarks/time_vs_error.py. More momentum and a larger alpha are cheaper for the same
-  // overlaps, but take g(r) away from DEM's, from less on if spots are uniform.
-  spot::RelaxationParameters relaxation;
-  if (accuracy == Accuracy::exact) return relaxation;
-  const bool fast = accuracy == Accuracy::fast;
-  relaxation.tolerance = fast ? 4e-3 : 1.7e-3;
-  relaxation.alpha = fast ? 1.0 : 0.8;
-  relaxation.momentum = fast ? profile.calibrated().fast_momentum : profile.calibrated().momentum;
-  relaxation.contact_overlap = fast ? 0.0 : 1.5e-3;
-  return relaxation;
-}
-
 void SpotCommand::resolve(double diameter) {
   time_ordered = time_ordered.value_or(accuracy == Accuracy::exact);
   // What is relaxed in the order of time is relaxed as in 2006 and 2010.
-  const spot::RelaxationParameters chosen = relaxation_of(*time_ordered ? Accuracy::exact : accuracy, *spots.profile);
+  const spot::RelaxationParameters chosen =
+      spot::relaxation_of(*time_ordered ? Accuracy::exact : accuracy, *spots.profile);
   relaxation.tolerance = tolerance.value_or(chosen.tolerance);
   relaxation.alpha = alpha.value_or(chosen.alpha);
   relaxation.momentum = *time_ordered ? 0.0 : momentum.value_or(chosen.momentum);
   relaxation.contact_overlap = contact_overlap.value_or(chosen.contact_overlap);
   if (spots.radius == 0.0) spots.radius = spots.profile->calibrated().radius_in_diameters * diameter;
-  if (spots.step_height == 0.0) spots.step_height = step_height_in_diameters(accuracy) * diameter;
-  spots.step_width = spot::step_width_for(diffusion_length.value_or(calibration::diffusion_length * diameter),
+  if (spots.step_height == 0.0) spots.step_height = spot::step_height_in_diameters(accuracy) * diameter;
+  spots.step_width = spot::step_width_for(diffusion_length.value_or(spot::calibration::diffusion_length * diameter),
                                           spots.step_height, spots.persistence);
-  side_buffer = side_buffer.value_or(calibration::side_buffer * diameter);
-  base_buffer = base_buffer.value_or(calibration::base_buffer * diameter);
+  side_buffer = side_buffer.value_or(spot::calibration::side_buffer * diameter);
+  base_buffer = base_buffer.value_or(spot::calibration::base_buffer * diameter);
   outlet = outlet.value_or(outlets.outlets().height());
   spots.injection_rate = outlets.injection(spots, diameter);
 }

@@ -10,6 +10,7 @@
 
 #include "outlet_command.h"
 #include "shaped_walls.h"
+#include "spot/drivers/defaults.hpp"
 #include "spot/geometry/periodic.hpp"
 #include "spot/relaxation/calibration.hpp"
 #include "spot/walk/parameters.hpp"
@@ -29,13 +30,6 @@ struct RegionWalls {
   std::string id;
 };
 
-/// `accuracy`: what everything that the command leaves open is chosen for.
-enum class Accuracy {
-  fast,    ///< overlaps up to several times those of DEM
-  normal,  ///< overlaps no larger than those of DEM
-  exact,   ///< as 2006: small steps in the order of time, relaxation after each
-};
-
 /// What a `fix ID group spot ...` command says, in the units of the deck. Where a length or a time was not
 /// given, it is empty and follows from the grain diameter or the timestep, see resolve().
 struct SpotCommand {
@@ -46,7 +40,7 @@ struct SpotCommand {
   spot::RelaxationParameters relaxation;
   std::optional<bool> time_ordered;  // the driver of 2006, not the windowed one
   std::optional<double> tolerance, alpha, momentum, contact_overlap;
-  Accuracy accuracy = Accuracy::normal;
+  spot::Accuracy accuracy = spot::Accuracy::normal;
   int threads = 1;
   std::optional<double> diffusion_length;
   std::optional<double> outlet;  // height below which grains are removed
@@ -61,10 +55,6 @@ struct SpotCommand {
   /// Fills in what was left open: the radius that goes with the profile, diffusion length 1.25 d, buffers of 0.25 d
   /// from side walls and 2 d from the base, outlet at the orifice, and what `accuracy` decides.
   void resolve(double diameter);
-
-  /// The parameters of an accuracy.
-  static double step_height_in_diameters(Accuracy accuracy);
-  static spot::RelaxationParameters relaxation_of(Accuracy accuracy, const spot::InfluenceProfile& profile);
 
   /// All that decides where grains and spots go, as text, once it is resolved, but for the window. `threads`, `average`
   /// and `peratom` are not in it.

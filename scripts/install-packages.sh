@@ -12,7 +12,7 @@ packages=(
   libeigen3-dev librandom123-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   python3 python3-numpy python3-scipy python3-matplotlib python3-pil python3-zstandard python3-pytest
-  python3-venv python3-setuptools python3-wheel
+  python3-venv python3-setuptools python3-wheel python3-dev pybind11-dev python3-lammps
 )
 [ $# -eq 0 ] || packages=("$@")
 

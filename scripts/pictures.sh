@@ -21,3 +21,9 @@ mkdir -p "$hopper"
 (cd examples/own-hopper && ../../build/bin/lmp -in in.own -log "../../$hopper/log.lammps" -screen none && mv drain.*.dump "../../$hopper")
 cp examples/own-hopper/scene.json "$hopper"
 render DEM=examples/own-hopper/dem.npz spot=$hopper --times 20 40 60 --height 420 -o docs/pictures/hopper.png
+
+scripts/build.sh default spotcore-python
+python=$(scripts/python.sh)
+(cd examples/python && PYTHONPATH=../../build/python MPLBACKEND=Agg "$python" drain_and_plot.py)
+"$python" -c "from PIL import Image
+Image.open('examples/python/drain_and_plot.png').convert('RGB').quantize(32).save('docs/pictures/drain_and_plot.png')"

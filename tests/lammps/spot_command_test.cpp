@@ -81,7 +81,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.relaxation.shell, 2.0);
   EXPECT_EQ(c.largest_overlap, 0.1);
   EXPECT_EQ(c.average, 5);
-  EXPECT_EQ(c.accuracy, Accuracy::fast);
+  EXPECT_EQ(c.accuracy, spot::Accuracy::fast);
   EXPECT_EQ(c.momentum, 0.3);
   EXPECT_EQ(c.contact_overlap, 2e-3);
   EXPECT_EQ(c.spots.fixed_volume, 77.5);
@@ -119,18 +119,18 @@ TEST(SpotCommand, ReadsWhatRelaxes) {
 }
 
 TEST(SpotCommand, AccuracyDecidesWhatIsLeftOpen) {
-  EXPECT_EQ(parse(complete).accuracy, Accuracy::normal);
-  const std::map<std::string, Accuracy> words = {
-      {"fast", Accuracy::fast}, {"normal", Accuracy::normal}, {"exact", Accuracy::exact}};
+  EXPECT_EQ(parse(complete).accuracy, spot::Accuracy::normal);
+  const std::map<std::string, spot::Accuracy> words = {
+      {"fast", spot::Accuracy::fast}, {"normal", spot::Accuracy::normal}, {"exact", spot::Accuracy::exact}};
   for (const auto& [word, accuracy] : words) {
     const SpotCommand c = resolved("accuracy " + word, 2.0);
-    const spot::RelaxationParameters chosen = SpotCommand::relaxation_of(accuracy, *spot::InfluenceProfile::parabolic);
-    EXPECT_EQ(*c.time_ordered, accuracy == Accuracy::exact) << word;
+    const spot::RelaxationParameters chosen = spot::relaxation_of(accuracy, *spot::InfluenceProfile::parabolic);
+    EXPECT_EQ(*c.time_ordered, accuracy == spot::Accuracy::exact) << word;
     EXPECT_EQ(c.relaxation.tolerance, chosen.tolerance) << word;
     EXPECT_EQ(c.relaxation.alpha, chosen.alpha) << word;
     EXPECT_EQ(c.relaxation.momentum, chosen.momentum) << word;
     EXPECT_EQ(c.relaxation.contact_overlap, chosen.contact_overlap) << word;
-    EXPECT_EQ(c.spots.step_height, 2.0 * SpotCommand::step_height_in_diameters(accuracy)) << word;
+    EXPECT_EQ(c.spots.step_height, 2.0 * spot::step_height_in_diameters(accuracy)) << word;
     EXPECT_NO_THROW(c.spots.validate()) << word;
     EXPECT_NO_THROW(c.relaxation.validate()) << word;
     // What is given stays.
@@ -474,7 +474,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"outlet", *c.outlet == c.outlets.outlets().height() ? "the height of the orifice" : "elsewhere"},
       {"buffer", in(*c.side_buffer / d, " d ") + in(*c.base_buffer / d, " d")},
       {"window", "see above"},
-      {"accuracy", std::string(c.accuracy == Accuracy::normal ? "normal" : "another") +
+      {"accuracy", std::string(c.accuracy == spot::Accuracy::normal ? "normal" : "another") +
                        ", which sets dz, relax, alpha, momentum and contact"},
       {"strength", c.relaxation.strength == spot::RelaxationStrength::half_each ? "half" : "full"},
       {"closing", in(c.relaxation.closing_gap, "")},
