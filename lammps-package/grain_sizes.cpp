@@ -9,8 +9,8 @@
 
 namespace {
 
-/// Relative; data files have seven digits and more.
-constexpr double rounding = 1e-6;
+/// Relative; dumps and data files may have six digits.
+constexpr double rounding = 1e-5;
 
 /// The volume of a grain of the largest diameter, in whole numbers, whose sums are exact: of up to 8e9 grains.
 constexpr double volume_units = 1 << 30;

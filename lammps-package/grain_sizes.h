@@ -17,7 +17,7 @@ struct GrainSizes {
   bool equal() const { return mean_volume == 1.0; }
   /// d of the model: the diameter of a grain of mean volume (length).
   double mean() const;
-  /// A grain's radius as spot-core takes it. What is within 1e-6 of the largest is the largest, so that grains whose
+  /// A grain's radius as spot-core takes it. What is within 1e-5 of the largest is the largest, so that grains whose
   /// diameters were rounded when they were written are equal; in the same way what is half as large.
   double radius(double radius) const;
   /// Throws spot::InvalidPacking that names the grain unless its radius is from half of the largest to that.

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How a mixture of sizes drains from a flat box: outflow, profiles of the fall, composition of what leaves, mixing.
+
+Volumes are those of the grains, from their radii. d is the scene's diameter, which is that of a grain of mean volume, so
+that volumes in pi/6 d^3 are grains of mean volume; times are in tau = sqrt(d/g). Large grains are those whose radius is
+above the mean of the smallest and the largest. Standard errors are over pairs of successive snapshots.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+HEIGHTS = (5.0, 10.0)  # d, of the profiles
+HALF_SLAB = 1.0  # d
+STRIP = 2.0  # d, width of the strips of a profile along |x|
+CORE = 6.0  # d, |x| within which packing fraction and the fall of either size are counted
+BULK = (5.0, 15.0)  # d, heights between which the packing fraction is counted
+LEVEL = 5.0  # d, from which residence is counted
+SLICE = 5.0  # tau, in which the composition of what leaves is counted
+CELL = 4.0  # d, of the cells of Lacey's index
+MEANING = {
+    "outflow": "grains of mean volume a tau",
+    "large_share_left": "volume of large grains over that of all that leave",
+    "packing_fraction": f"|x| < {CORE:g} d, {BULK[0]:g} to {BULK[1]:g} d up",
+    "lacey": f"Lacey's mixing index of the two sizes, in cells of {CELL:g} d: 0 apart, 1 as by chance",
+    "slower_large": "fall of small grains less that of large ones, over their mean",
+    "residence": f"median time from {LEVEL:g} d to the orifice",
+}
+
+
+@dataclass(frozen=True)
+class _Snapshot:
+    time: float
+    ids: np.ndarray
+    positions: np.ndarray
+    volumes: np.ndarray
+    large: np.ndarray
+
+    @property
+    def inside(self):
+        return self.positions[:, 2] > 0
+
+
+def _mean(values):
+    """[mean, standard error] of independent values; not a number where there are none."""
+    values = np.asarray(values, dtype=float)
+    values = values[np.isfinite(values)]
+    if len(values) == 0:
+        return [float("nan"), float("nan")]
+    return [float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else float("nan")]
+
+
+def measure(frames, scene, start, end):
+    """Quantity -> [value, standard error].
+
+    frames : Frames of a drainage in the order of time, with the column radius; scene : Scene of the box
+    start, end : the interval, tau
+
+    Raises ValueError if a frame has no radii, if all grains are of one size, or if fewer than three snapshots lie in the
+    interval.
+    """
+    snapshots = _snapshots(frames, scene)
+    inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
+    if len(inside) < 3:
+        raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
+    pairs = list(zip(inside, inside[1:]))
+    left = np.array([_left(before, after) for before, after in pairs])  # small, large
+    times = np.array([after.time - before.time for before, after in pairs])
+    found = {"outflow": _mean(left.sum(axis=1) / times), "large_share_left": _share(left)}
+    found.update(_composition(snapshots))
+    for height in HEIGHTS:
+        found.update(_profile(pairs, height, scene.half_width_x / scene.diameter))
+        found[f"slower_large_{height:g}d"] = _mean([_slower_large(*pair, height) for pair in pairs])
+    found["packing_fraction"] = _mean([_packing_fraction(s, scene) for s in inside])
+    found["lacey_start"] = [lacey_index(snapshots[0].positions, snapshots[0].large), float("nan")]
+    found["lacey_end"] = [lacey_index(inside[-1].positions[inside[-1].inside], inside[-1].large[inside[-1].inside]),
+                          float("nan")]
+    small, large = _residence(snapshots, start, end)
+    found[f"residence_small_{LEVEL:g}d"], found[f"residence_large_{LEVEL:g}d"] = _mean(small), _mean(large)
+    return found
+
+
+def _snapshots(frames, scene):
+    snapshots, split = [], None
+    for frame in frames:
+        radius = frame.extra.get("radius")
+        if radius is None:
+            raise ValueError("the dumps have no column 'radius'")
+        if split is None:
+            if len(radius) == 0 or np.ptp(radius) <= 1e-3 * radius.max():
+                raise ValueError("the first snapshot has no grains of unequal size: compare.py is for equal ones")
+            split = (radius.min() + radius.max()) / 2
+        volumes = (2 * radius / scene.diameter) ** 3
+        snapshots.append(_Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions), volumes, radius > split))
+    return snapshots
+
+
+def _left(before, after):
+    """Volume of small and of large grains that has left through the orifice."""
+    return [sum(sign * s.volumes[s.inside & (s.large == large)].sum() for sign, s in ((1, before), (-1, after)))
+            for large in (False, True)]
+
+
+def _share(left):
+    """That of large grains, whose error is the spread of what is over or missing in each pair."""
+    share = left[:, 1].sum() / left.sum()
+    residual = left[:, 1] - share * left.sum(axis=1)
+    return [float(share), float(np.sqrt(len(left)) * residual.std(ddof=1) / left.sum())]
+
+
+def _composition(snapshots):
+    """Of what leaves, in slices of time from the opening on."""
+    found, first = {}, snapshots[0]
+    for snapshot in snapshots[1:]:
+        if snapshot.time - first.time > SLICE - 1e-6:
+            small, large = _left(first, snapshot)
+            if small + large > 0:
+                found[f"large_share_left_at_{(first.time + snapshot.time) / 2:.0f}tau"] = [large / (small + large), float("nan")]
+            first = snapshot
+    return found
+
+
+def _common(before, after):
+    """Of grains in both snapshots: index in the second, where they were between, d, and how fast they fall, d/tau."""
+    _, first, second = np.intersect1d(before.ids, after.ids, assume_unique=True, return_indices=True)
+    middle = (before.positions[first] + after.positions[second]) / 2
+    return second, middle, (before.positions[first, 2] - after.positions[second, 2]) / (after.time - before.time)
+
+
+def _profile(pairs, height, half_width):
+    """Rate of fall, each grain counted by its volume, in strips of |x| at a height."""
+    edges = STRIP * np.arange(int(half_width / STRIP + 1e-6) + 1)
+    speeds = []
+    for before, after in pairs:
+        index, middle, fall = _common(before, after)
+        slab = np.abs(middle[:, 2] - height) < HALF_SLAB
+        strip, weight = np.abs(middle[slab, 0]), after.volumes[index][slab]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            speeds.append(np.histogram(strip, edges, weights=weight * fall[slab])[0] / np.histogram(strip, edges, weights=weight)[0])
+    return {f"speed_{height:g}d_x{(low + high) / 2:.1f}d": _mean(np.array(speeds)[:, k])
+            for k, (low, high) in enumerate(zip(edges, edges[1:]))}
+
+
+def _slower_large(before, after, height):
+    index, middle, fall = _common(before, after)
+    here = (np.abs(middle[:, 2] - height) < HALF_SLAB) & (np.abs(middle[:, 0]) < CORE)
+    large = after.large[index]
+    if not (here & large).any() or not (here & ~large).any():
+        return float("nan")
+    return (fall[here & ~large].mean() - fall[here & large].mean()) / fall[here].mean()
+
+
+def _packing_fraction(snapshot, scene):
+    """Grain volume by centres, from wall to wall in y."""
+    x, _, z = snapshot.positions.T
+    here = (np.abs(x) < CORE) & (z > BULK[0]) & (z < BULK[1])
+    room = 2 * CORE * (2 * scene.half_depth_y / scene.diameter) * (BULK[1] - BULK[0])
+    return snapshot.volumes[here].sum() * np.pi / 6 / room
+
+
+def lacey_index(positions, large):
+    """Lacey's mixing index of a random sample of two kinds (J. Appl. Chem. 4, 257, 1954): (s0^2 - s^2) / (s0^2 - sr^2).
+
+    positions : (n, 3), d; large : (n,) bool
+
+    s^2 is the variance of the share of large grains over cells of ``CELL``, each counted by its n grains, s0^2 = p (1 - p)
+    that of grains apart, sr^2 that of a random mixture. Cells with fewer than 20 grains do not count.
+    """
+    cells, cell = np.unique(np.floor(positions / CELL).astype(int), axis=0, return_inverse=True)
+    cell = cell.ravel()
+    count = np.bincount(cell, minlength=len(cells))
+    share = np.bincount(cell, weights=large, minlength=len(cells)) / count
+    full = count >= 20
+    if np.count_nonzero(full) < 2:
+        return float("nan")
+    count, share = count[full], share[full]
+    p = np.average(share, weights=count)
+    apart, between = p * (1 - p), np.average((share - p) ** 2, weights=count)
+    chance = apart * len(count) / count.sum()  # s0^2 / n in each cell, which counts n times
+    return float((apart - between) / (apart - chance)) if apart > chance else float("nan")
+
+
+def _residence(snapshots, start, end):
+    """For small and for large grains, the medians, a pair of snapshots each, of what those that leave have taken from the level."""
+    passed, medians = {}, ([], [])
+    for before, after in zip(snapshots, snapshots[1:]):
+        later = dict(zip(after.ids.tolist(), after.positions[:, 2].tolist()))
+        stayed = ([], [])
+        for grain, height, large in zip(before.ids.tolist(), before.positions[:, 2].tolist(), before.large.tolist()):
+            now = later.get(grain, -np.inf)
+            if height >= LEVEL > now and grain not in passed:
+                share = (height - LEVEL) / (height - max(now, 0.0))
+                passed[grain] = before.time + share * (after.time - before.time)
+            if height > 0.0 >= now and grain in passed:
+                stayed[large].append((before.time + after.time) / 2 - passed[grain])
+        if start <= before.time and after.time <= end:
+            for kind in (0, 1):
+                if stayed[kind]:
+                    medians[kind].append(np.median(stayed[kind]))
+    return medians
