@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .lacey import CELL, lacey_index
+
 HEIGHTS = (5.0, 10.0)  # d, of the profiles
 HALF_SLAB = 1.0  # d
 STRIP = 2.0  # d, width of the strips of a profile along |x|
@@ -17,7 +19,6 @@ CORE = 6.0  # d, |x| within which packing fraction and the fall of either size a
 BULK = (5.0, 15.0)  # d, heights between which the packing fraction is counted
 LEVEL = 5.0  # d, from which residence is counted
 SLICE = 5.0  # tau, in which the composition of what leaves is counted
-CELL = 4.0  # d, of the cells of Lacey's index
 MEANING = {
     "outflow": "grains of mean volume a tau",
     "large_share_left": "volume of large grains over that of all that leave",
@@ -156,28 +157,6 @@ def _packing_fraction(snapshot, scene):
     here = (np.abs(x) < CORE) & (z > BULK[0]) & (z < BULK[1])
     room = 2 * CORE * (2 * scene.half_depth_y / scene.diameter) * (BULK[1] - BULK[0])
     return snapshot.volumes[here].sum() * np.pi / 6 / room
-
-
-def lacey_index(positions, large):
-    """Lacey's mixing index of a random sample of two kinds (J. Appl. Chem. 4, 257, 1954): (s0^2 - s^2) / (s0^2 - sr^2).
-
-    positions : (n, 3), d; large : (n,) bool
-
-    s^2 is the variance of the share of large grains over cells of ``CELL``, each counted by its n grains, s0^2 = p (1 - p)
-    that of grains apart, sr^2 that of a random mixture. Cells with fewer than 20 grains do not count.
-    """
-    cells, cell = np.unique(np.floor(positions / CELL).astype(int), axis=0, return_inverse=True)
-    cell = cell.ravel()
-    count = np.bincount(cell, minlength=len(cells))
-    share = np.bincount(cell, weights=large, minlength=len(cells)) / count
-    full = count >= 20
-    if np.count_nonzero(full) < 2:
-        return float("nan")
-    count, share = count[full], share[full]
-    p = np.average(share, weights=count)
-    apart, between = p * (1 - p), np.average((share - p) ** 2, weights=count)
-    chance = apart * len(count) / count.sum()  # s0^2 / n in each cell, which counts n times
-    return float((apart - between) / (apart - chance)) if apart > chance else float("nan")
 
 
 def _residence(snapshots, start, end):
