@@ -13,8 +13,8 @@ def lacey_index(positions, large):
     positions : (n, 3), d; large : (n,) bool
 
     s^2 is the variance of the share of large grains over cells of ``CELL``, each counted by its n grains, s0^2 = p (1 - p)
-    that of grains apart, sr^2 that of a random mixture. Cells with fewer than ``LEAST`` grains do not count, and it is not a number where fewer than
-    two are left.
+    that of grains apart, sr^2 that of a random mixture. Cells with fewer than ``LEAST`` grains do not count; not a number
+    where fewer than two are left.
     """
     cells, cell = np.unique(np.floor(positions / CELL).astype(int), axis=0, return_inverse=True)
     cell = cell.ravel()

@@ -10,23 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .lacey import CELL, lacey_index
+from .lacey import lacey_index
+from .residence_by_size import LEVEL, residence
 
 HEIGHTS = (5.0, 10.0)  # d, of the profiles
 HALF_SLAB = 1.0  # d
 STRIP = 2.0  # d, width of the strips of a profile along |x|
 CORE = 6.0  # d, |x| within which packing fraction and the fall of either size are counted
 BULK = (5.0, 15.0)  # d, heights between which the packing fraction is counted
-LEVEL = 5.0  # d, from which residence is counted
 SLICE = 5.0  # tau, in which the composition of what leaves is counted
-MEANING = {
-    "outflow": "grains of mean volume a tau",
-    "large_share_left": "volume of large grains over that of all that leave",
-    "packing_fraction": f"|x| < {CORE:g} d, {BULK[0]:g} to {BULK[1]:g} d up",
-    "lacey": f"Lacey's mixing index of the two sizes, in cells of {CELL:g} d: 0 apart, 1 as by chance",
-    "slower_large": "fall of small grains less that of large ones, over their mean",
-    "residence": f"median time from {LEVEL:g} d to the orifice",
-}
 
 
 @dataclass(frozen=True)
@@ -76,7 +68,7 @@ def measure(frames, scene, start, end):
     found["lacey_start"] = [lacey_index(snapshots[0].positions, snapshots[0].large), float("nan")]
     found["lacey_end"] = [lacey_index(inside[-1].positions[inside[-1].inside], inside[-1].large[inside[-1].inside]),
                           float("nan")]
-    small, large = _residence(snapshots, start, end)
+    small, large = residence(snapshots, start, end)
     found[f"residence_small_{LEVEL:g}d"], found[f"residence_large_{LEVEL:g}d"] = _mean(small), _mean(large)
     return found
 
@@ -157,23 +149,3 @@ def _packing_fraction(snapshot, scene):
     here = (np.abs(x) < CORE) & (z > BULK[0]) & (z < BULK[1])
     room = 2 * CORE * (2 * scene.half_depth_y / scene.diameter) * (BULK[1] - BULK[0])
     return snapshot.volumes[here].sum() * np.pi / 6 / room
-
-
-def _residence(snapshots, start, end):
-    """For small and for large grains, the medians, a pair of snapshots each, of what those that leave have taken from the level."""
-    passed, medians = {}, ([], [])
-    for before, after in zip(snapshots, snapshots[1:]):
-        later = dict(zip(after.ids.tolist(), after.positions[:, 2].tolist()))
-        stayed = ([], [])
-        for grain, height, large in zip(before.ids.tolist(), before.positions[:, 2].tolist(), before.large.tolist()):
-            now = later.get(grain, -np.inf)
-            if height >= LEVEL > now and grain not in passed:
-                share = (height - LEVEL) / (height - max(now, 0.0))
-                passed[grain] = before.time + share * (after.time - before.time)
-            if height > 0.0 >= now and grain in passed:
-                stayed[large].append((before.time + after.time) / 2 - passed[grain])
-        if start <= before.time and after.time <= end:
-            for kind in (0, 1):
-                if stayed[kind]:
-                    medians[kind].append(np.median(stayed[kind]))
-    return medians
