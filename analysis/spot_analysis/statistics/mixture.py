@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .axial_flow import mean_of
 from .lacey import lacey_index
 from .residence_by_size import LEVEL, residence
 
@@ -34,15 +35,6 @@ class _Snapshot:
         return self.positions[:, 2] > 0
 
 
-def _mean(values):
-    """[mean, standard error] of independent values; not a number where there are none."""
-    values = np.asarray(values, dtype=float)
-    values = values[np.isfinite(values)]
-    if len(values) == 0:
-        return [float("nan"), float("nan")]
-    return [float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else float("nan")]
-
-
 def measure(frames, scene, start, end):
     """Quantity -> [value, standard error].
 
@@ -59,17 +51,17 @@ def measure(frames, scene, start, end):
     pairs = list(zip(inside, inside[1:]))
     left = np.array([_left(before, after) for before, after in pairs])  # small, large
     times = np.array([after.time - before.time for before, after in pairs])
-    found = {"outflow": _mean(left.sum(axis=1) / times), "large_share_left": _share(left)}
+    found = {"outflow": mean_of(left.sum(axis=1) / times), "large_share_left": _share(left)}
     found.update(_composition(snapshots))
     for height in HEIGHTS:
         found.update(_profile(pairs, height, scene.half_width_x / scene.diameter))
-        found[f"slower_large_{height:g}d"] = _mean([_slower_large(*pair, height) for pair in pairs])
-    found["packing_fraction"] = _mean([_packing_fraction(s, scene) for s in inside])
+        found[f"slower_large_{height:g}d"] = mean_of([_slower_large(*pair, height) for pair in pairs])
+    found["packing_fraction"] = mean_of([_packing_fraction(s, scene) for s in inside])
     found["lacey_start"] = [lacey_index(snapshots[0].positions, snapshots[0].large), float("nan")]
     found["lacey_end"] = [lacey_index(inside[-1].positions[inside[-1].inside], inside[-1].large[inside[-1].inside]),
                           float("nan")]
     small, large = residence(snapshots, start, end)
-    found[f"residence_small_{LEVEL:g}d"], found[f"residence_large_{LEVEL:g}d"] = _mean(small), _mean(large)
+    found[f"residence_small_{LEVEL:g}d"], found[f"residence_large_{LEVEL:g}d"] = mean_of(small), mean_of(large)
     return found
 
 
@@ -130,7 +122,7 @@ def _profile(pairs, height, half_width):
         strip, weight = np.abs(middle[slab, 0]), after.volumes[index][slab]
         with np.errstate(invalid="ignore", divide="ignore"):
             speeds.append(np.histogram(strip, edges, weights=weight * fall[slab])[0] / np.histogram(strip, edges, weights=weight)[0])
-    return {f"speed_{height:g}d_x{(low + high) / 2:.1f}d": _mean(np.array(speeds)[:, k])
+    return {f"speed_{height:g}d_x{(low + high) / 2:.1f}d": mean_of(np.array(speeds)[:, k])
             for k, (low, high) in enumerate(zip(edges, edges[1:]))}
 
 
