@@ -11,6 +11,7 @@ from spot_analysis.reading.frame import Frame
 from spot_analysis.reading.scene import Scene
 from spot_analysis.statistics import mixture
 from spot_analysis.statistics.lacey import lacey_index
+from spot_analysis.statistics.surface_share import surface_share
 
 SCENE = Scene(diameter=2.0, gravity=2.0, timestep=0.5, half_width_x=20.0, half_depth_y=8.0, orifice_radius=8.0)  # tau = 1
 SMALL, LARGE = 0.8, 1.2  # radii
@@ -75,6 +76,15 @@ def test_laceys_index():
     half = (positions[:, 2] > 8) ^ (draws.random(20000) < 0.25)  # shares of 1/4 and 3/4: (1/4 - 1/16) / (1/4)
     assert lacey_index(positions, half) == pytest.approx(0.75, abs=0.02)
     assert np.isnan(lacey_index(positions[:10], np.zeros(10, bool)))
+
+
+def test_share_of_the_surface():
+    """On a slope: a layer 3 d thick, of large grains to the right of the middle, lies on small ones."""
+    x, depth = (values.ravel() for values in np.meshgrid(np.arange(-10, 10, 2.5) + 1.25, np.arange(0, 12, 1.0)))
+    positions = np.stack([x, 0 * x, 20 + 0.5 * x - depth], axis=1)
+    large = (depth < 3) & (x > 0)
+    assert surface_share(positions, np.where(large, 3.0, 1.0), large) == pytest.approx(3 / 4)
+    assert np.isnan(surface_share(positions[:0], large[:0], large[:0]))
 
 
 def test_input_that_does_not_fit():

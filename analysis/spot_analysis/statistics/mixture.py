@@ -13,6 +13,7 @@ import numpy as np
 from .axial_flow import mean_of
 from .lacey import lacey_index
 from .residence_by_size import LEVEL, residence
+from .surface_share import surface_share
 
 HEIGHTS = (5.0, 10.0)  # d, of the profiles
 HALF_SLAB = 1.0  # d
@@ -57,9 +58,10 @@ def measure(frames, scene, start, end):
         found.update(_profile(pairs, height, scene.half_width_x / scene.diameter))
         found[f"slower_large_{height:g}d"] = mean_of([_slower_large(*pair, height) for pair in pairs])
     found["packing_fraction"] = mean_of([_packing_fraction(s, scene) for s in inside])
-    found["lacey_start"] = [lacey_index(snapshots[0].positions, snapshots[0].large), float("nan")]
-    found["lacey_end"] = [lacey_index(inside[-1].positions[inside[-1].inside], inside[-1].large[inside[-1].inside]),
-                          float("nan")]
+    for name, snapshot in (("start", snapshots[0]), ("end", inside[-1])):
+        grains = [values[snapshot.inside] for values in (snapshot.positions, snapshot.volumes, snapshot.large)]
+        found[f"lacey_{name}"] = [lacey_index(grains[0], grains[2]), float("nan")]
+        found[f"surface_share_{name}"] = [surface_share(*grains), float("nan")]
     small, large = residence(snapshots, start, end)
     found[f"residence_small_{LEVEL:g}d"], found[f"residence_large_{LEVEL:g}d"] = mean_of(small), mean_of(large)
     return found
