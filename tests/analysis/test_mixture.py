@@ -87,13 +87,21 @@ def test_share_of_the_surface():
     assert np.isnan(surface_share(positions[:0], large[:0], large[:0]))
 
 
+def test_equal_grains():
+    """What needs no second size is measured all the same."""
+    equal = [Frame(f.timestep, f.ids, f.positions, f.box, {"radius": np.ones(len(f.ids))}) for f in falling_frames()]
+    found = mixture.measure(equal, SCENE, 4, 24)
+    assert found["outflow"][0] == pytest.approx(100, rel=0.1) and found["large_share_left"][0] == 0
+    assert found["speed_10d_x5.0d"][0] == pytest.approx(0.5) and np.isnan(found["lacey_end"][0])
+
+
 def test_input_that_does_not_fit():
     frames = falling_frames()
     with pytest.raises(ValueError, match="2 snapshots between 0 and 2 tau"):
         mixture.measure(frames, SCENE, 0, 2)
-    equal = [Frame(f.timestep, f.ids, f.positions, f.box, {"radius": np.ones(len(f.ids))}) for f in frames]
-    with pytest.raises(ValueError, match="no grains of unequal size: compare.py"):
-        mixture.measure(equal, SCENE, 4, 24)
+    with pytest.raises(ValueError, match="the first snapshot has no grains"):
+        mixture.measure([Frame(0, *(values[:0] for values in (frames[0].ids, frames[0].positions)), frames[0].box,
+                               {"radius": np.zeros(0)})], SCENE, 4, 24)
     with pytest.raises(ValueError, match="no column 'radius'"):
         mixture.measure([Frame(f.timestep, f.ids, f.positions, f.box) for f in frames], SCENE, 4, 24)
 

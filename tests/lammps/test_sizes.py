@@ -2,12 +2,15 @@
 """Grains of unequal size, of several types: same bits always, overlaps as small as with equal ones, volume closes."""
 
 import gzip
+import json
+import os
 import re
+import subprocess
 
 import numpy as np
 import pytest
 
-from lammps_runs import (BOX, FIX, HEIGHT, LOAD_SPOT, ROOT, deck, drain, error_of, lattice, needs_mpirun, on_ranks,
+from lammps_runs import (BOX, FIX, FRONT_END, HEIGHT, LOAD_SPOT, PLUGIN, ROOT, deck, drain, error_of, lattice, needs_mpirun, on_ranks,
                          positions, read_dump, run_ok, run_text, thermo, write_data)
 
 ALL = FIX + " volume 77 dilation 0.03"
@@ -215,3 +218,19 @@ def test_grains_keep_their_size(tmp_path, ranks):
     write_mixture(tmp_path)
     error = error_of(deck(fix=ALL, run="run 5\nset atom 300 diameter 0.77\nrun 5"), tmp_path, launcher=on_ranks(ranks))
     assert "grain 300 was" in error and "is 0.77 wide now: grains must keep their size" in error
+
+
+# ---- the example
+
+@pytest.mark.parametrize("ratio, said", [(1.5, "up to 0.00389"), (2, "up to 0.00495")])
+def test_the_example_drains(tmp_path, ratio, said):
+    """From 2 to 4 tau: what Beverloo's law predicts is 144 grains of mean volume, give or take the births of spots."""
+    words = ["-var", "ratio", str(ratio), "-var", "tau_run", "4", "-var", "out", str(tmp_path)]
+    done = subprocess.run([FRONT_END, "-in", "in.bidisperse", "-log", "none", "-nocite", *words], cwd=MIXTURE.parent,
+                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    assert said in done.stdout and "Beverloo's law predicts an outflow of 4" in done.stdout
+    frames = [read_dump(tmp_path / f"drain.{step}.dump")[0][1] for step in (4, 8)]
+    volume = [(frame["radius"]**3).sum() / (D / 2)**3 for frame in frames]
+    assert volume[0] - volume[1] == pytest.approx(144, rel=0.15)
+    assert json.loads((tmp_path / "scene.json").read_text())["grains"] == 5000

@@ -42,8 +42,8 @@ def measure(frames, scene, start, end):
     frames : Frames of a drainage in the order of time, with the column radius; scene : Scene of the box
     start, end : the interval, tau
 
-    Raises ValueError if a frame has no radii, if all grains are of one size, or if fewer than three snapshots lie in the
-    interval.
+    Equal grains count as small ones. Raises ValueError if a frame has no radii, the first no grains, or if fewer than three
+    snapshots lie in the interval.
     """
     snapshots = _snapshots(frames, scene)
     inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
@@ -74,8 +74,8 @@ def _snapshots(frames, scene):
         if radius is None:
             raise ValueError("the dumps have no column 'radius'")
         if split is None:
-            if len(radius) == 0 or np.ptp(radius) <= 1e-3 * radius.max():
-                raise ValueError("the first snapshot has no grains of unequal size: compare.py is for equal ones")
+            if len(radius) == 0:
+                raise ValueError("the first snapshot has no grains")
             split = (radius.min() + radius.max()) / 2
         volumes = (2 * radius / scene.diameter) ** 3
         snapshots.append(_Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions), volumes, radius > split))
