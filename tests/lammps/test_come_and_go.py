@@ -189,6 +189,13 @@ def test_adapted_diameter_is_seen_in_the_next_step(tmp_path):
     assert "diameters from 0.5 to 1, the largest at the start" in error and "has 1.05" in error, error
 
 
+def test_adapted_diameter_that_may_come_may_not_change(tmp_path):
+    adapt = "variable wide equal ramp(1.0,0.8)\nfix shrink all adapt 10 atom diameter v_wide"
+    text = deck(fix=FIX, run="run 40", after=adapt).replace("atom_style sphere", "atom_style sphere 1")
+    error = error_of(text, tmp_path)
+    assert " was 1 wide and is 0.95 wide now: grains must keep their size" in error, error
+
+
 def test_diameter_that_shrinks(tmp_path):
     error = error_of(deck(fix=FIX, run="run 5\nset atom 300 diameter 0.9\nrun 5"), tmp_path)
     assert "grain 300 was 1 wide and is 0.9 wide now: grains must keep their size" in error, error

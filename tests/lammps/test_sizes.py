@@ -117,6 +117,20 @@ def _written(path, data):
     return path
 
 
+def test_output_per_atom(tmp_path):
+    """What has become of each grain, whatever its size; small ones are moved as often as large ones."""
+    write_mixture(tmp_path)
+    run_ok(deck(fix=ALL + " peratom yes", after="dump fates all custom 30 fates.dump id radius x y z f_drain[*]\n"
+                                                "dump_modify fates sort id format float %.17g"), tmp_path)
+    (_, first), (_, last) = read_dump(tmp_path / "fates.dump")
+    stayed = np.isin(first["id"], last["id"])
+    for k, axis in enumerate("xyz"):
+        assert last[f"f_drain[{k + 1}]"] == pytest.approx(last[axis] - first[axis][stayed], abs=1e-6)
+    small = last["radius"] < np.median(last["radius"])
+    moves = last["f_drain[4]"]
+    assert moves[small].mean() == pytest.approx(moves[~small].mean(), rel=0.1)
+
+
 # ---- a mixture that DEM poured
 
 @pytest.fixture(scope="module")
