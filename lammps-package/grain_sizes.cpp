@@ -21,7 +21,7 @@ bool within_rounding(double value, double other) { return std::abs(value - other
 
 double GrainSizes::mean() const { return equal() ? largest : largest * spot::cbrt(mean_volume); }
 
-double GrainSizes::radius(double radius) const {
+double GrainSizes::rounded(double radius) const {
   for (const double exact : {0.5 * largest, 0.25 * largest})
     if (within_rounding(radius, exact)) return exact;
   return radius;

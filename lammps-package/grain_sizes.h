@@ -19,9 +19,12 @@ struct GrainSizes {
   double mean() const;
   /// A grain's radius as spot-core takes it. What is within 1e-5 of the largest is the largest, so that grains whose
   /// diameters were rounded when they were written are equal; in the same way what is half as large.
-  double radius(double radius) const;
+  double radius(double radius) const { return radius == 0.5 * largest ? radius : rounded(radius); }
   /// Throws spot::InvalidPacking that names the grain unless its radius is from half of the largest to that.
   void require(std::int64_t grain, double radius) const;
+
+ private:
+  double rounded(double radius) const;
 };
 
 /// Of grains on all ranks, the same on any number of them. `moves`: whether a grain counts for the mean; all do if none

@@ -131,6 +131,14 @@ def test_the_command_compares_and_keeps_statistics(tmp_path):
     assert said.returncode == 1 and "holds the interval 4 to 24 tau" in said.stderr
 
 
+def test_hopper_is_for_equal_grains(tmp_path):
+    run = write_run(tmp_path / "run")
+    scene = {"diameter": 2.0, "gravity": 2.0, "timestep": 0.5, "orifice_radius": 8.0, "cylinder_radius": 24.0, "cone_height": 20.0}
+    (run / "scene.json").write_text(json.dumps(scene))
+    said = script("hopper.py", run, "--from", 4, "--to", 24)
+    assert said.returncode == 1 and "has radius 1.2" in said.stderr, said.stderr
+
+
 def test_comparison_of_equal_grains_says_where_to_go(tmp_path):
     said = script("compare.py", write_run(tmp_path / "run"), tmp_path / "run", "-o", tmp_path / "out")
     assert said.returncode == 1 and "has radius" in said.stderr and "mixture.py" in said.stderr, said.stderr

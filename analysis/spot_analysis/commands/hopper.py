@@ -8,7 +8,6 @@ import os
 
 from ..base.errors import AnalysisError
 from ..reading.axial_scene import load_axial_scene
-from ..reading.dump import read_frames
 from ..report import plots_axial
 from ..statistics import axial_flow
 from . import command_line
@@ -20,7 +19,7 @@ def _statistics(source, start, end):
     if not source.endswith(".json"):
         scene = load_axial_scene(source)
         try:
-            return axial_flow.measure(read_frames(source, warn=command_line.print_warning), scene, start, end)
+            return axial_flow.measure(command_line.frames_of_equal_grains(source, scene), scene, start, end)
         except ValueError as error:
             raise AnalysisError(f"{source}: {error}") from error
     try:
