@@ -11,7 +11,6 @@ require_packages("numpy", "scipy", "zstandard")
 
 from spot_analysis.base.progress import Progress  # noqa: E402  (only after the check above)
 from spot_analysis.commands import command_line  # noqa: E402
-from spot_analysis.reading.dump import read_frames  # noqa: E402
 from spot_analysis.reading.scene import load_scene  # noqa: E402
 from spot_analysis.statistics import cell_imprint, fold  # noqa: E402
 from spot_analysis.statistics.history import History  # noqa: E402
@@ -35,7 +34,7 @@ def measure(options):
         scene, progress, history = load_scene(source), Progress(source), History(LAG_TAU)
         container = scene.container()
         measurement = measurement or cell_imprint.Measurement(container, (cell_imprint.EDGE, *CONTROLS))
-        for number, frame in enumerate(read_frames(source, warn=command_line.print_warning)):
+        for number, frame in enumerate(command_line.frames_of_equal_grains(source, scene)):
             time = scene.time(frame.timestep)
             snapshot = Snapshot(time, frame.ids, scene.positions(frame.positions), container, None)
             if number == 0:

@@ -15,7 +15,6 @@ import numpy as np  # noqa: E402  (only after the check above)
 from spot_analysis.base.errors import AnalysisError  # noqa: E402
 from spot_analysis.base.progress import Progress  # noqa: E402
 from spot_analysis.commands import command_line  # noqa: E402
-from spot_analysis.reading.dump import read_frames  # noqa: E402
 from spot_analysis.statistics import flow_law, flow_places, fraction_law, widening  # noqa: E402
 from spot_analysis.statistics.flow_sums import Measurement  # noqa: E402
 from spot_analysis.statistics.interval import STEADY_FROM  # noqa: E402
@@ -58,7 +57,7 @@ class Run:
         self.name, self.container = name, scene.container()
         measured = Measurement(self.container, intervals)
         progress = Progress(source)
-        for frame in read_frames(source, warn=command_line.print_warning):
+        for frame in command_line.frames_of_equal_grains(source, scene):
             measured.add(Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions), self.container, None))
             progress(f"t = {scene.time(frame.timestep):g} tau")
         self.intervals = {number: span for number, span in enumerate(measured.intervals) if measured.pairs(number)}

@@ -7,12 +7,12 @@
 #include <map>
 #include <sstream>
 
+#include "spot/drivers/defaults.hpp"
 #include "spot/parallel/communicator.hpp"
 #include "spot/parallel/workers.hpp"
 #include "spot/walk/calibration.hpp"
 #include "spot/walk/free_surface.hpp"
 #include "spot/walk/spots.hpp"
-#include "spot_calibration.h"
 
 using spot::Vector3;
 
@@ -53,7 +53,7 @@ Walks walk(const DryRun& run) {
 
   spot::Spots spots(parameters, *run.container, run.diameter);
   const double climb = (top - run.container->outlets().height() + 2.0 * parameters.radius) / parameters.speed;
-  const double window = std::min(calibration::climb_in_a_window * run.diameter / parameters.speed, look * climb);
+  const double window = std::min(spot::calibration::climb_in_a_window * run.diameter / parameters.speed, look * climb);
   Walks walks;
   std::size_t moves = 0, moves_before = 0, live_before = 0;
   double next_look = look * climb, last_look = 0.0;
@@ -66,11 +66,13 @@ Walks walk(const DryRun& run) {
     spots.step_until(walks.time, *run.container, worker,
                      [&](const spot::Spot& spot, const std::vector<spot::Move>& made) {
                        moves += made.size();
+                       for (const spot::Move& move : made) spots.add_to_flow(move, 1.0);
                        if (spot.id < ways_kept)
                          for (const spot::Move& move : made) walks.ways[spot.id].push_back(move.middle);
                        if (spot.position.z() > surface.height(spot.position) + parameters.radius)
                          gone.push_back(spot.id);
                      });
+    spots.update_flow(window, alone);
     for (const std::int64_t spot : gone) spots.remove(spot);
     if (walks.time < next_look) continue;
     const std::size_t live = spots.live().size();

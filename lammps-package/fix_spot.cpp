@@ -19,6 +19,7 @@
 #include "dry_run.h"
 #include "find_region.h"
 #include "grain_delivery.h"
+#include "grain_sizes.h"
 #include "mpi_communicator.h"
 #include "region_container.h"
 #include "saved_run.h"
@@ -155,7 +156,7 @@ struct FixSpot::Model {
   SpotCommand command;
   std::shared_ptr<MpiCommunicator> ranks;
   std::optional<SavedRun> saved;  // from a restart file, until the drainage goes on from it
-  double diameter = 0.0;
+  GrainSizes sizes;
   double drained_mass = 0.0;
   std::vector<std::int64_t> drained_at;  // grains that have left through each outlet, as far as this rank knows
   double overlap_after_run = 0.0;
@@ -274,7 +275,8 @@ void FixSpot::choose_window() {
   const bool steps = update->nsteps > 0;
   double window = command.window.value_or(update->dt);
   if (!command.window && !*command.time_ordered) {
-    const double longest = spot::longest_window(command.spots, model->diameter, command.outlets.outlets());
+    const double longest =
+        spot::longest_window(command.spots, model->sizes.mean(), model->sizes.largest, command.outlets.outlets());
     window = update->dt / std::ceil(update->dt / longest - 1e-9);
   }
   if (window != model->window) model->drainage.reset();  // in which there have been no windows yet
@@ -332,23 +334,31 @@ void FixSpot::name_unused_forces() {
 void FixSpot::check_grains() {
   if (atom->natoms == 0) {
     // A silo that ran empty is no error, but without a single grain there is no diameter to start from.
-    if (!(model->diameter > 0.0)) error->all(FLERR, std::string("fix spot: there are no grains"));
+    if (!model->sizes.known()) error->all(FLERR, std::string("fix spot: there are no grains"));
     return;
   }
-  // One rank may hold none. NaN is no number that is least, so a diameter that is none is found below.
-  const double own = atom->nlocal > 0 ? -2.0 * atom->radius[0] : 0.0;
-  const double diameter = model->diameter > 0.0 ? model->diameter : -model->ranks->least(std::vector<double>{own})[0];
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (!(std::abs(2.0 * atom->radius[i] - diameter) <= 1e-6 * diameter))
-      error->one(FLERR, message("fix spot needs grains of one diameter, ", diameter, ": grain ", atom->tag[i], " has ",
-                                2.0 * atom->radius[i]));
+  if (!model->sizes.known()) measure_grains();
+  try {
+    for (int i = 0; i < atom->nlocal; ++i) model->sizes.require(atom->tag[i], atom->radius[i]);
+  } catch (const spot::InvalidPacking &e) {
+    error->one(FLERR, message("fix spot: ", e.what()));
+  }
   // LAMMPS would stop a little later, too, but without naming the grain.
   for (int i = 0; i < atom->nlocal; ++i)
     if (!std::isfinite(atom->x[i][0]) || !std::isfinite(atom->x[i][1]) || !std::isfinite(atom->x[i][2]))
       error->one(FLERR, message("fix spot: position of grain ", atom->tag[i], " is not finite"));
-  if (!(diameter > 0.0))
-    error->all(FLERR, std::string("fix spot: the grains have no diameter; use 'set ... diameter'"));
-  model->diameter = diameter;
+}
+
+/// Once: what comes later must fit.
+void FixSpot::measure_grains() {
+  std::vector<bool> moves(atom->nlocal);
+  for (int i = 0; i < atom->nlocal; ++i) moves[i] = (atom->mask[i] & groupbit) != 0;
+  const GrainSizes sizes = measure_sizes({atom->radius, atom->radius + atom->nlocal}, moves, *model->ranks);
+  if (!sizes.known()) error->all(FLERR, std::string("fix spot: the grains have no diameter; use 'set ... diameter'"));
+  model->sizes = sizes;
+  if (!sizes.equal() && comm->me == 0)
+    utils::logmesg(lmp, message("fix spot: grains of unequal size, up to ", sizes.largest,
+                                " wide; one of mean volume, d, is ", sizes.mean(), " wide\n"));
 }
 
 void FixSpot::init() {
@@ -356,10 +366,10 @@ void FixSpot::init() {
   check_other_fixes();
   check_grains();
   // Without a pair style nobody else asks for a communication cutoff, and LAMMPS would warn that it is zero.
-  comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->diameter);
+  comm->cutghostuser = std::max(comm->cutghostuser, 2.0 * model->sizes.largest);
   try {
     read_period();
-    model->command.resolve(model->diameter);
+    model->command.resolve(model->sizes.mean(), model->sizes.mean_volume);
     tell_predicted_outflow();
     if (*model->command.time_ordered && comm->nprocs > 1)
       throw spot::InvalidParameter(message("relaxation in the order of time runs on 1 MPI rank, not on ", comm->nprocs,
@@ -386,7 +396,7 @@ void FixSpot::dry_run() {
   const std::string text = describe({model->command,
                                      model->container,
                                      grains,
-                                     model->diameter,
+                                     model->sizes.mean(),
                                      model->window,
                                      update->dt,
                                      update->nsteps,
@@ -403,7 +413,7 @@ void FixSpot::dry_run() {
 /// Once: what 'beverloo' has made of the outlets, and where not to trust it.
 void FixSpot::tell_predicted_outflow() {
   const OutletCommand &outlets = model->command.outlets;
-  const std::vector<double> outflow = outlets.predicted_outflow(model->diameter);
+  const std::vector<double> outflow = outlets.predicted_outflow(model->sizes.mean());
   if (outflow.empty() || model->told_outflow || comm->me != 0) return;
   model->told_outflow = true;
   const spot::Outlets all = outlets.outlets();
@@ -411,7 +421,7 @@ void FixSpot::tell_predicted_outflow() {
     utils::logmesg(lmp, message("fix spot: Beverloo's law predicts an outflow of ", outflow[k],
                                 " grains per time through the ", all[k].name(), ", ",
                                 model->command.spots.injection_rate.largest(k), " births of spots per time\n"));
-  for (const std::string &doubt : outlets.doubts(model->diameter)) error->warning(FLERR, "fix spot: " + doubt);
+  for (const std::string &doubt : outlets.doubts(model->sizes.largest)) error->warning(FLERR, "fix spot: " + doubt);
 }
 
 /// Of one rank, maybe: all others have to stop, too.
@@ -496,7 +506,7 @@ spot::Grain FixSpot::grain_of_lammps(int i) const {
   return {atom->tag[i],
           {atom->x[i][0], atom->x[i][1], atom->x[i][2]},
           (atom->mask[i] & groupbit) == 0,
-          0.5 * model->diameter};
+          model->sizes.radius(atom->radius[i])};
 }
 
 std::vector<spot::Grain> FixSpot::grains_of_lammps() const {
@@ -509,7 +519,7 @@ std::vector<spot::Grain> FixSpot::grains_of_lammps() const {
 
 /// No coordinate is ever larger.
 double FixSpot::extent() const {
-  double extent = std::abs(*model->command.outlet) + model->diameter;
+  double extent = std::abs(*model->command.outlet) + model->sizes.largest;
   for (int axis = 0; axis < 3; ++axis)
     extent = std::max({extent, std::abs(domain->boxlo[axis]), std::abs(domain->boxhi[axis])});
   return extent;
@@ -519,7 +529,7 @@ double FixSpot::extent() const {
 void FixSpot::make_drainage() {
   const SpotCommand &command = model->command;
   const spot::DrainageLimits limits{*command.outlet, command.largest_overlap};
-  const double diameter = model->diameter;
+  const double diameter = model->sizes.largest;
   const auto time_ordered = [&](auto &&...start) {
     model->drainage = std::make_unique<spot::TimeOrderedDrainage>(command.spots, command.relaxation, limits,
                                                                   model->container, start...);
@@ -725,7 +735,7 @@ void FixSpot::pre_exchange() {
   std::int64_t found = 0;
   for (const tagint grain : model->leaving)
     if (const int i = model->local[grain]; i >= 0) {
-      atom->x[i][2] = domain->boxlo[2] - model->diameter;
+      atom->x[i][2] = domain->boxlo[2] - model->sizes.largest;
       ++found;
     }
   atom->natoms -= static_cast<bigint>(model->ranks->sum(found));
@@ -799,9 +809,10 @@ double FixSpot::compute_vector(int which) {
   }
 }
 
-/// In distance units.
+/// In distance units: its share of the mean of the two diameters, times that of the largest grains.
 double FixSpot::largest_overlap() const {
-  return -model->ranks->least(std::vector<double>{-model->drainage->largest_overlap().depth})[0] * model->diameter;
+  const double depth = -model->ranks->least(std::vector<double>{-model->drainage->largest_overlap().depth})[0];
+  return depth * model->sizes.largest;
 }
 
 /// Grains a time, over the last `average` steps (fewer when no more were done).
@@ -820,7 +831,7 @@ void FixSpot::write_restart(FILE *file) {
   SavedRun run;
   MPI_Allreduce(&model->drained_mass, &run.drained_mass, 1, MPI_DOUBLE, MPI_SUM, world);
   run.drained_at = model->ranks->sum(model->drained_at);
-  run.diameter = model->diameter;
+  run.sizes = model->sizes;
   run.windows = model->windows;
   for (const Model::Drained &drained : model->drained) {
     run.windows_after_step.push_back(drained.windows);
@@ -843,7 +854,7 @@ void FixSpot::restart(char *bytes) {
   } catch (const spot::Error &e) {
     fail(e);
   }
-  model->diameter = model->saved->diameter;
+  model->sizes = model->saved->sizes;
   model->windows = model->saved->windows;
   // Other ranks' shares are in that of rank 0. A number of outlets that is another one is refused later.
   model->drained_mass = comm->me == 0 ? model->saved->drained_mass : 0.0;

@@ -60,6 +60,7 @@ class FixSpot : public Fix {
   void check_run();
   void dry_run();
   void check_grains();
+  void measure_grains();
   void choose_window();
   void go_on_with_saved_window();
   void check_other_fixes();

@@ -80,6 +80,13 @@ std::vector<Bytes> sort_by_meeting(const std::vector<spot::Grain> &grains, int r
   return sort_by_rank(all, ranks, [ranks](const Whereabouts &grain) { return meeting_rank(grain.id, ranks); });
 }
 
+/// Another grain may have the number of one that is gone, at another place.
+void require_same_radius(const spot::Grain &was, const spot::Grain &is) {
+  if (was.position == is.position && was.radius != is.radius)
+    throw spot::InvalidPacking(spot::message("grain ", is.id, " was ", 2.0 * was.radius, " wide and is ",
+                                             2.0 * is.radius, " wide now: grains must keep their size"));
+}
+
 }  // namespace
 
 spot::GrainChanges find_changes(const std::vector<spot::Grain> &packing, const std::vector<spot::Grain> &lammps,
@@ -94,6 +101,7 @@ spot::GrainChanges find_changes(const std::vector<spot::Grain> &packing, const s
     for (const auto &place : ByteReader(bytes).take_all<Whereabouts>()) {
       if (!seen.insert(place.id).second) throw spot::InvalidPacking(spot::message("grain ", place.id, " occurs twice"));
       const auto found = known.find(place.id);
+      if (found != known.end()) require_same_radius(found->second, place.grain());
       if (found != known.end() && found->second == place.grain())
         known.erase(found);
       else

@@ -29,7 +29,8 @@ std::vector<Parcel> deliver(const std::vector<Parcel> &parcels, const std::vecto
 
 /// What has to be done to the grains of `packing`, each on one rank, for them to be those of `lammps`, each on one
 /// rank, too, and perhaps another; positions are compared to the last bit. Collective; every rank gets its own part of
-/// the changes. Throws spot::InvalidPacking that names a grain which LAMMPS has twice.
+/// the changes. Throws spot::InvalidPacking that names a grain which LAMMPS has twice, or whose radius has changed
+/// where it is.
 spot::GrainChanges find_changes(const std::vector<spot::Grain> &packing, const std::vector<spot::Grain> &lammps,
                                 spot::Communicator &communicator);
 

@@ -15,7 +15,7 @@ using spot::message;
 namespace {
 
 constexpr char magic[8] = {'s', 'p', 'o', 't', ' ', 'r', 'u', 'n'};
-constexpr std::int32_t version = 10;
+constexpr std::int32_t version = 11;
 
 /// What the state of a run begins with. Magic and version stand where they stood in version 1 and always will.
 struct Header {
@@ -46,7 +46,8 @@ Bytes head_of(const SavedRun &run, const std::vector<std::int64_t> &sizes) {
     append_text(head, name);
     append_text(head, value);
   }
-  spot::append(head, run.diameter);
+  spot::append(head, run.sizes.largest);
+  spot::append(head, run.sizes.mean_volume);
   spot::append(head, run.window);
   spot::append(head, run.windows);
   spot::append(head, run.drained_mass);
@@ -64,7 +65,8 @@ std::vector<std::int64_t> take_head(ByteReader reader, SavedRun &run) {
     const std::string name = take_text(reader);
     run.settings.emplace_back(name, take_text(reader));
   }
-  run.diameter = reader.take<double>();
+  run.sizes.largest = reader.take<double>();
+  run.sizes.mean_volume = reader.take<double>();
   run.window = reader.take<double>();
   run.windows = reader.take<std::int64_t>();
   run.drained_mass = reader.take<double>();

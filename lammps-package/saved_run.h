@@ -7,12 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "grain_sizes.h"
 #include "spot/parallel/communicator.hpp"
 
 /// What the fix puts into a restart file of LAMMPS.
 struct SavedRun {
   std::vector<std::pair<std::string, std::string>> settings;  // what must be the same when the run goes on
-  double diameter = 0.0;                                      // of the grains, of which none may be left
+  GrainSizes sizes;                                           // as they were; no grain may be left
   double window = 0.0;                                        // 0: not chosen yet
   std::int64_t windows = 0;
   double drained_mass = 0.0;

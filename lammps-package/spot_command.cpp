@@ -204,7 +204,7 @@ std::size_t modify_spot_command(SpotCommand& command, const std::vector<std::str
   return words.taken();
 }
 
-void SpotCommand::resolve(double diameter) {
+void SpotCommand::resolve(double diameter, double mean_volume) {
   time_ordered = time_ordered.value_or(accuracy == Accuracy::exact);
   // What is relaxed in the order of time is relaxed as in 2006 and 2010.
   const spot::RelaxationParameters chosen =
@@ -220,7 +220,9 @@ void SpotCommand::resolve(double diameter) {
   side_buffer = side_buffer.value_or(spot::calibration::side_buffer * diameter);
   base_buffer = base_buffer.value_or(spot::calibration::base_buffer * diameter);
   outlet = outlet.value_or(outlets.outlets().height());
+  spots.mean_grain_volume = 1.0;  // for grains of this diameter
   spots.injection_rate = outlets.injection(spots, diameter);
+  spots.mean_grain_volume = mean_volume;
 }
 
 namespace {

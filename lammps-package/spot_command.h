@@ -53,8 +53,9 @@ struct SpotCommand {
   SpotCommand() { spots.profile = spot::InfluenceProfile::parabolic; }
 
   /// Fills in what was left open: the radius that goes with the profile, diffusion length 1.25 d, buffers of 0.25 d
-  /// from side walls and 2 d from the base, outlet at the orifice, and what `accuracy` decides.
-  void resolve(double diameter);
+  /// from side walls and 2 d from the base, outlet at the orifice, and what `accuracy` decides. `diameter`: of a grain
+  /// of mean volume, d; `mean_volume`: its volume, over that of the largest.
+  void resolve(double diameter, double mean_volume = 1.0);
 
   /// All that decides where grains and spots go, as text, once it is resolved, but for the window. `threads`, `average`
   /// and `peratom` are not in it.

@@ -69,7 +69,7 @@ Drainage::Drainage(const Packing& packing, const Walls& walls, const std::vector
   const py::gil_scoped_release release;
   spots.validate();
   container_ = walls.make(holes, parameters.buffers);
-  window_ = window ? *window : spot::longest_window(spots, diameter_, container_->outlets());
+  window_ = window ? *window : spot::longest_window(spots, diameter_, diameter_, container_->outlets());
   drainage_ = std::make_unique<spot::WindowedDrainage>(spots, parameters.relaxation, limits, window_, threads,
                                                        container_, diameter_, extent, grains);
 }

@@ -257,7 +257,26 @@ def test_periodic_along_y(tmp_path):
         assert written["half_period_y"] == pytest.approx(WALLS[1]) and "half_depth_y" not in written
 
 
+def test_two_sizes(tmp_path):
+    """Half of the volume is that of grains 1.5 times as wide, and the mean volume that of a bead."""
+    scene = {**SCENE, "ratio": 1.5, "step": 4, "out": tmp_path}
+    run_ok("silo", "in.pour", rest=1e-2, **scene)
+    (_, packed), = read_dump(tmp_path / "pour" / "packed.dump")
+    small, large = np.unique(packed["radius"])
+    assert large / small == pytest.approx(1.5, rel=1e-5) and len(packed["id"]) == 600
+    volume = (2 * packed["radius"] / DIAMETER)**3
+    assert volume.mean() == pytest.approx(1, abs=0.02)
+    assert volume[packed["radius"] > 1.2 * small].sum() / volume.sum() == pytest.approx(0.5, abs=0.02)
+    run_ok("silo", "in.drain", time=0.02 * TAU, every=0.02, **scene)
+    (_, first), = read_dump(tmp_path / "drain" / "drain.0.dump")
+    assert np.array_equal(first["radius"], packed["radius"])
+    done = run("silo", "in.drain", time=0.02 * TAU, **{**scene, "ratio": 1})
+    assert done.returncode != 0 and "are not beads of diameter" in done.stdout + done.stderr
+
+
 BAD_POURS = [
+    ({"ratio": 0.5}, "ratio (0.5) must be at least 1"),
+    ({"ratio": 1.5, "share": 1.2}, "share (1.2) from 0 to 1"),
     ({"periodic": 2}, "periodic is 2"),
     ({"size": "huge"}, "no size huge"),
     ({"orifice": 9}, "an orifice of 9 d is wider than the base"),

@@ -173,7 +173,8 @@ def test_before_the_box(tmp_path):
 
 
 @pytest.mark.parametrize("before, said", [
-    ("set atom 17 diameter 1.1", ["one diameter, 1", "grain 17 has 1.1"]),
+    ("set atom 17 diameter 2.1", ["diameters from 1.05 to 2.1, the largest", "grain ", " has 1"]),
+    ("set atom 17 diameter 0.49", ["diameters from 0.5 to 1, the largest", "grain 17 has 0.49"]),
     ("set group all diameter 0", ["no diameter"]),
     ("variable none atom (1e300*1e300)-(1e300*1e300)\nset atom 17 x v_none", ["position of grain 17 is not finite"]),
     ("set atom 17 z -1.5", ["grain 17 at (", "-1.5) is outside the container"]),

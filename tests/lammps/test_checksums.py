@@ -50,6 +50,12 @@ def come_and_go(folder, ranks):
 INGREDIENTS = ALL + " profile uniform radius 2.5 volume 72 critical 0.56 1 dilatancy 0.1 nonaffine 0.1 0.5 closing 4e-3 0.1"
 
 
+def two_sizes(folder, ranks):
+    points = lattice()
+    write_data(folder / "packing.data", points, box=BOX[:5] + (60.0,), diameters=np.where(np.arange(len(points)) % 5, 0.6, 1.0))
+    run_ok(deck(fix=ALL + " nonaffine 0.1 0.5 closing 4e-3 0.1", run=f"run {STEPS}"), folder, launcher=on_ranks(ranks))
+
+
 # By name: what leaves grains.dump in the folder.
 SCENES = {
     "box": lambda folder, ranks: one_run(folder, ranks),
@@ -61,6 +67,7 @@ SCENES = {
     "region": region,
     "restarts": restarts,
     "come-and-go": come_and_go,
+    "two-sizes": two_sizes,
 }
 
 

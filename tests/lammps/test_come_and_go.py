@@ -169,8 +169,7 @@ def put(x, y, z):
     ("group some id 300\ndisplace_atoms some move 0.3 0 0", ["grains ", " and ", "overlap by", "at most 0.03"]),
     (put(0, 0, 15) + "\n" + put(0.4, 0, 15), ["overlap by 0.6", "when they are put in"]),
     ("group some id 300\ndisplace_atoms some move 0 0 -12", ["grain 300 at (", "is outside the container"]),
-    ("set atom 300 diameter 1.2", ["grains of one diameter, 1", "grain 300 has 1.2"]),
-], ids=["random", "displaced", "one in another", "outside", "diameter"])
+], ids=["random", "displaced", "one in another", "outside"])
 @pytest.mark.parametrize("when", ["before the first run", "between runs"])
 def test_refused(tmp_path, change, said, when):
     first = "run 5\n" if when == "between runs" else ""
@@ -187,7 +186,19 @@ def test_adapted_diameter_is_seen_in_the_next_step(tmp_path):
     adapt = "variable wide equal ramp(1.0,1.2)\nfix grow all adapt 10 atom diameter v_wide"
     text = deck(fix=FIX, run="run 40", after=adapt).replace("atom_style sphere", "atom_style sphere 1")
     error = error_of(text, tmp_path)
-    assert "grains of one diameter, 1" in error, error
+    assert "diameters from 0.5 to 1, the largest at the start" in error and "has 1.05" in error, error
+
+
+def test_adapted_diameter_that_may_come_may_not_change(tmp_path):
+    adapt = "variable wide equal ramp(1.0,0.8)\nfix shrink all adapt 10 atom diameter v_wide"
+    text = deck(fix=FIX, run="run 40", after=adapt).replace("atom_style sphere", "atom_style sphere 1")
+    error = error_of(text, tmp_path)
+    assert " was 1 wide and is 0.95 wide now: grains must keep their size" in error, error
+
+
+def test_diameter_that_shrinks(tmp_path):
+    error = error_of(deck(fix=FIX, run="run 5\nset atom 300 diameter 0.9\nrun 5"), tmp_path)
+    assert "grain 300 was 1 wide and is 0.9 wide now: grains must keep their size" in error, error
 
 
 @pytest.mark.parametrize("integrator, said", [

@@ -72,7 +72,7 @@ REFUSED = {
     "z 1e308": (lambda t: replaced(t, 5, Z, "1e308"), ""),
     "diameter 0": (lambda t: replaced(t, 5, DIAMETER, "0"), ""),
     "diameter nan": (lambda t: replaced(t, 5, DIAMETER, "nan"), ""),
-    "diameter another": (lambda t: replaced(t, 5, DIAMETER, "1.01"), "grains of one diameter"),
+    "diameter another": (lambda t: replaced(t, 5, DIAMETER, "0.49"), "grains may have diameters from 0.5 to 1"),
     "negative diameter": (lambda t: replaced(t, 5, DIAMETER, "-1"), ""),
     "density 0": (lambda t: replaced(t, 5, DENSITY, "0"), ""),
     "type 2": (lambda t: replaced(t, 5, TYPE, "2"), ""),

@@ -146,6 +146,20 @@ TEST(FixedVolumeAnalytic, VolumeIsThatOfThePartAboveTheOutlet) {
   EXPECT_NEAR(spot::fixed_volume_weight(spots, 0.0, 40 * spot::grain_volume), 77.0 * 0.5 / 40.0, 1e-6);
 }
 
+/// N, and the 20 grains below which weights stay, are of mean volume: of grains that are all half as wide as the
+/// reference, a spot moves as with as many equal ones.
+TEST(FixedVolumeAnalytic, CountsGrainsOfMeanVolume) {
+  spot::SpotParameters equal = scenes::paper_spots(), small = equal;
+  equal.fixed_volume = small.fixed_volume = 77.0;
+  small.mean_grain_volume = 0.125;
+  for (const int grains : {0, 8, 40, 80, 300})
+    for (const double height : {0.5, 3.0})
+      EXPECT_EQ(spot::fixed_volume_weight(small, height, grains * spot::grain_volume / 8),
+                spot::fixed_volume_weight(equal, height, grains * spot::grain_volume))
+          << grains;
+  EXPECT_EQ(spot::largest_weight(small), spot::largest_weight(equal));
+}
+
 /// What a parabolic spot hands out falls with the square of the distance, to nothing at its radius.
 TEST(DisplacementAnalytic, SharesOfAParabolicSpot) {
   const double radius = 3.5;

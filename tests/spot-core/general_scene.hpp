@@ -123,6 +123,7 @@ class GeneralScene {
       spots_.nonaffine = draws.uniform(0.05, 0.5);
       spots_.nonaffine_length = d * draws.uniform(0.05, 2.0);
     }
+    if (!equal_ && draws.below(2) == 0) count_in_mean_grains();
   }
 
   std::unique_ptr<spot::TimeOrderedDrainage> start_time_ordered() const {
@@ -174,6 +175,14 @@ class GeneralScene {
   }
 
  private:
+  /// Spots carry the same volume, told in grains of mean volume.
+  void count_in_mean_grains() {
+    double volume = 0.0;
+    for (const spot::Grain& grain : grains_) volume += std::pow(2.0 * spot::radius_in(diameter_, grain) / diameter_, 3);
+    spots_.mean_grain_volume = volume / static_cast<double>(grains_.size());
+    spots_.fixed_volume /= spots_.mean_grain_volume;
+  }
+
   std::uint64_t seed_;
   double diameter_;
   bool repeats_x_, repeats_y_, equal_;

@@ -250,6 +250,24 @@ TEST(ParametersUnit, FixedVolumeOutOfRangeNamesTheWordAndTheBound) {
   }
 }
 
+TEST(ParametersUnit, MeanGrainVolumeIsThatOfGrainsUpToHalfAsWide) {
+  SpotParameters spots = scenes::paper_spots();
+  EXPECT_EQ(spots.mean_diameter(0.003), 0.003) << "equal grains, to the last bit";
+  spots.fixed_volume = 77.0;
+  const double equal = spots.missing_volume(0.003);
+  for (const double good : {0.125, 0.5, 1.0}) {
+    spots.mean_grain_volume = good;
+    EXPECT_NO_THROW(spots.validate());
+    EXPECT_DOUBLE_EQ(spots.missing_volume(0.003), equal * good);
+    EXPECT_DOUBLE_EQ(spots.mean_diameter(0.003), 0.003 * std::cbrt(good));
+  }
+  for (const double bad : {-1.0, 0.0, 0.124, 1.001, infinity, std::nan("")}) {
+    spots.mean_grain_volume = bad;
+    EXPECT_THAT(scenes::text_of<InvalidParameter>([&] { spots.validate(); }),
+                AllOf(HasSubstr("mean grain volume is "), HasSubstr("from 0.125 to 1")));
+  }
+}
+
 TEST(ParametersUnit, MomentumOutOfRangeNamesTheWordAndTheBound) {
   RelaxationParameters relaxation;
   for (const double good : {0.0, 0.5, 0.999}) {

@@ -5,10 +5,12 @@ import os
 import sys
 
 from ..base.errors import AnalysisError
+from ..reading.dump import read_frames
 from ..reading.scene import NUMBERS, ORIGIN, load_scene
 from ..report import left_out
 from ..statistics import run_statistics
 from ..statistics.measuring import measure_dumps
+from ..statistics.scene_fit import require_diameter
 
 
 def add_scene_options(parser, prefix=""):
@@ -34,6 +36,13 @@ def open_run(source, options, prefix, label, concepts=run_statistics.CONCEPTS):
         return run_statistics.load(source)
     scene = scene_from_options(options, source, prefix)
     return measure_dumps(source, scene, label, warn=print_warning, concepts=concepts)
+
+
+def frames_of_equal_grains(source, scene):
+    """The frames of dumps; raises SceneError where grains cannot have the scene's diameter."""
+    for frame in read_frames(source, extra=("radius",), warn=print_warning):
+        require_diameter(scene, frame)
+        yield frame
 
 
 def print_warning(text):

@@ -8,10 +8,10 @@ import os
 
 from ..base.errors import AnalysisError
 from ..reading.axial_scene import load_axial_scene
-from ..reading.dump import read_frames
 from ..report import plots_axial
 from ..statistics import axial_flow
 from . import command_line
+from .quantities import pooled, row
 
 
 def _statistics(source, start, end):
@@ -19,7 +19,7 @@ def _statistics(source, start, end):
     if not source.endswith(".json"):
         scene = load_axial_scene(source)
         try:
-            return axial_flow.measure(read_frames(source, warn=command_line.print_warning), scene, start, end)
+            return axial_flow.measure(command_line.frames_of_equal_grains(source, scene), scene, start, end)
         except ValueError as error:
             raise AnalysisError(f"{source}: {error}") from error
     try:
@@ -31,23 +31,6 @@ def _statistics(source, start, end):
         return stored["quantities"]
     except (ValueError, KeyError, TypeError) as error:
         raise AnalysisError(f"{source}: no statistics of a hopper ({error})") from error
-
-
-def _pooled(runs):
-    """Mean over runs, with the standard error over them where there are several."""
-    pooled = {}
-    for name in runs[0]:
-        values = [run.get(name, [math.nan, math.nan]) for run in runs]
-        mean = sum(value for value, _ in values) / len(values)
-        spread = math.sqrt(sum((value - mean) ** 2 for value, _ in values) / max(len(values) - 1, 1) / len(values))
-        pooled[name] = [mean, spread if len(values) > 1 else values[0][1]]
-    return pooled
-
-
-def _row(name, reference, spot):
-    words = [f"{value:.4g} +- {error:.2g}" if math.isfinite(value) else "unknown" for value, error in (reference, spot)]
-    known = math.isfinite(reference[0]) and math.isfinite(spot[0]) and reference[0] != 0
-    return "| " + " | ".join([name, *words, f"{100 * (spot[0] / reference[0] - 1):+.1f} %" if known else ""]) + " |"
 
 
 def compare():
@@ -71,10 +54,10 @@ def compare():
             json.dump({"interval": [options.start, options.end], "quantities": runs[0]}, handle, indent=1)
         print(f"{options.output}: {len(runs[0])} quantities, {os.path.getsize(options.output)} bytes")
     if len(runs) > 1:
-        spot = _pooled(runs[1:])
+        spot = pooled(runs[1:])
         print(f"| {options.start:g} to {options.end:g} tau | {options.runs[0]} | {len(runs) - 1} of spot | difference |\n|---|---|---|---|")
         for name, value in runs[0].items():
-            print(_row(name, value, spot.get(name, [math.nan, math.nan])))
+            print(row(name, value, spot.get(name, [math.nan, math.nan])))
         if options.plot:
             plots_axial.save_profiles(options.plot, runs[0], spot)
             print(f"{options.plot}: profiles of the fall")

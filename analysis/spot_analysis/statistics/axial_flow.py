@@ -22,7 +22,7 @@ class _Snapshot:
     positions: np.ndarray
 
 
-def _mean(values):
+def mean_of(values):
     """[mean, standard error] of independent values; not a number where there are none."""
     values = np.asarray(values, dtype=float)
     values = values[np.isfinite(values)]
@@ -45,12 +45,12 @@ def measure(frames, scene, start, end):
     if len(inside) < 3:
         raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
     pairs = list(zip(inside, inside[1:]))
-    found = {"outflow": _mean([_left(before, after) / (after.time - before.time) for before, after in pairs])}
+    found = {"outflow": mean_of([_left(before, after) / (after.time - before.time) for before, after in pairs])}
     for height in HEIGHTS:
         found.update(_profile(pairs, height, scene.radius_at(height)))
-    found["packing_fraction"] = _mean([_packing_fraction(s, scene) for s in inside])
+    found["packing_fraction"] = mean_of([_packing_fraction(s, scene) for s in inside])
     for level in LEVELS:
-        found[f"residence_median_{level:g}d"] = _mean(_residence(snapshots, level, start, end))
+        found[f"residence_median_{level:g}d"] = mean_of(_residence(snapshots, level, start, end))
     return found
 
 
@@ -64,9 +64,9 @@ def _profile(pairs, height, radius):
     edges = np.append(RING * np.arange(rings), radius)  # the last is wider, up to the wall
     speeds = np.array([_speeds(before, after, height, edges) for before, after in pairs])
     name = f"speed_{height:g}d"
-    found = {f"{name}_r{(low + high) / 2:.1f}d": _mean(speeds[:, k]) for k, (low, high) in enumerate(zip(edges, edges[1:]))}
+    found = {f"{name}_r{(low + high) / 2:.1f}d": mean_of(speeds[:, k]) for k, (low, high) in enumerate(zip(edges, edges[1:]))}
     with np.errstate(invalid="ignore", divide="ignore"):
-        found[f"mass_flow_index_{height:g}d"] = _mean(speeds[:, -1] / speeds[:, 0])
+        found[f"mass_flow_index_{height:g}d"] = mean_of(speeds[:, -1] / speeds[:, 0])
     return found
 
 

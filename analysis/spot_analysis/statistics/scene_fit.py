@@ -17,7 +17,7 @@ def require_diameter(scene, frame):
     if radius is not None and np.any(np.abs(2 * radius / diameter - 1) > 1e-3):
         odd = np.argmax(np.abs(2 * radius / diameter - 1))
         raise SceneError(f"grain {frame.ids[odd]} has radius {radius[odd]:g}, "
-                         f"but the scene's diameter is {diameter:g}")
+                         f"but the scene's diameter is {diameter:g}; grains of unequal size are for mixture.py")
     if len(frame.ids) < 2:
         return
     extent = np.ptp(frame.positions, axis=0) + diameter

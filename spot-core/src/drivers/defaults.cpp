@@ -32,8 +32,8 @@ RelaxationParameters relaxation_of(Accuracy accuracy, const InfluenceProfile& pr
   return relaxation;
 }
 
-double longest_window(const SpotParameters& spots, double diameter, const Outlets& outlets) {
-  const double flow = WindowedDrainage::flow_through_orifice(spots, 1.0, diameter, outlets);
+double longest_window(const SpotParameters& spots, double diameter, double largest, const Outlets& outlets) {
+  const double flow = WindowedDrainage::flow_through_orifice(spots, 1.0, largest, outlets) * (largest / diameter);
   return std::min(calibration::climb_in_a_window * diameter / spots.speed, calibration::flow_in_a_window / flow);
 }
 

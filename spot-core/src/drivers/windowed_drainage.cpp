@@ -28,8 +28,8 @@ double WindowedDrainage::flow_through_orifice(const SpotParameters& spots, doubl
                                               const Outlets& outlets) {
   constexpr double packing_fraction = calibration::packing_fraction_of_flow;
   const double radii = spots.equivalent_radius() / diameter;
-  const double enclosed =
-      spots.fixed_volume > 0.0 ? spots.fixed_volume : 8.0 * packing_fraction * radii * radii * radii;
+  const double enclosed = spots.fixed_volume > 0.0 ? spots.fixed_volume * spots.mean_grain_volume
+                                                   : 8.0 * packing_fraction * radii * radii * radii;
   double most = 0.0;
   for (std::size_t k = 0; k < outlets.size(); ++k) {
     const double grains = time * spots.injection_rate.largest(k) * spots.influence * enclosed;
@@ -91,7 +91,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       communicator_(std::move(communicator)),
       workers_(std::make_unique<Workers>(threads)),
       window_(positive_window(window)),
-      moves_between_sweeps_(moves_between_sweeps_for(spots, relaxation.tolerance, diameter)),
+      moves_between_sweeps_(moves_between_sweeps_for(spots, relaxation.tolerance, spots.mean_diameter(diameter))),
       spots_(spots, Drainage::container(), diameter),
       packing_(diameter, extent, limits.outlet, grains, Drainage::container(), communicator_),
       relaxation_(packing_, relaxation),

@@ -46,7 +46,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       communicator_(std::move(communicator)),
       workers_(std::make_unique<Workers>(threads)),
       window_(positive_window(window)),
-      moves_between_sweeps_(moves_between_sweeps_for(spots, relaxation.tolerance, diameter)),
+      moves_between_sweeps_(moves_between_sweeps_for(spots, relaxation.tolerance, spots.mean_diameter(diameter))),
       spots_(spots, Drainage::container(), diameter),
       packing_(diameter, extent, read(saved), Drainage::container(), communicator_),
       relaxation_(packing_, relaxation),

@@ -16,7 +16,7 @@ double largest_weight(const SpotParameters& parameters) {
 double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed, double volume) {
   if (parameters.fixed_volume == 0.0) return volume;
   const double part = parameters.profile->part_above(height / parameters.radius);
-  const double grains = static_cast<double>(enclosed) / grain_volume;
+  const double grains = static_cast<double>(enclosed) / grain_volume / parameters.mean_grain_volume;
   return parameters.fixed_volume * volume * part / std::max(grains, calibration::least_enclosed * volume * part + 1e-9);
 }
 

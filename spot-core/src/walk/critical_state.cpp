@@ -13,7 +13,7 @@ namespace spot {
 CriticalState::CriticalState(const SpotParameters& parameters, double diameter)
     : profile_(parameters.profile),
       radius_(parameters.radius),
-      inset_(calibration::inset_of_walls * diameter),
+      inset_(calibration::inset_of_walls * parameters.mean_diameter(diameter)),
       fraction_(parameters.critical_fraction),
       exchange_length_(parameters.exchange_length),
       dilatancy_(parameters.dilatancy) {

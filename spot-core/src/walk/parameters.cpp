@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "spot/base/elementary.hpp"
 #include "spot/base/errors.hpp"
 #include "spot/walk/calibration.hpp"
 
@@ -12,6 +13,9 @@ namespace {
 
 /// In diameters; far from what makes a packing collapse.
 constexpr double largest_contact_overlap = 0.05;
+
+/// Of a grain with half of the reference diameter, the smallest there can be.
+constexpr double least_mean_grain_volume = 0.125;
 
 /// In diameters; wider ones are no contacts that moves opened, and lists need a skin beyond them.
 constexpr double largest_closing_gap = 0.05;
@@ -30,8 +34,12 @@ double SpotParameters::spot_volume(double packing_fraction) const {
 
 double SpotParameters::missing_volume(double diameter) const {
   const double pi = 3.14159265358979323846;
-  return fixed_volume > 0.0 ? influence * fixed_volume * pi / 6.0 * diameter * diameter * diameter
+  return fixed_volume > 0.0 ? influence * fixed_volume * pi / 6.0 * diameter * diameter * diameter * mean_grain_volume
                             : spot_volume(calibration::packing_fraction_of_flow);
+}
+
+double SpotParameters::mean_diameter(double diameter) const {
+  return mean_grain_volume == 1.0 ? diameter : diameter * cbrt(mean_grain_volume);
 }
 
 double SpotParameters::fastest() const { return dilation > 0.0 ? speed * calibration::fastest_relative_speed : speed; }
@@ -58,6 +66,9 @@ void SpotParameters::validate() const {
   injection_rate.validate();
   if (!(fixed_volume >= 0.0) || !std::isfinite(fixed_volume))
     throw InvalidParameter(message("fixed volume is ", fixed_volume, " grains but must be zero (off) or positive"));
+  if (!(mean_grain_volume >= least_mean_grain_volume && mean_grain_volume <= 1.0))
+    throw InvalidParameter(message("mean grain volume is ", mean_grain_volume, " but must be from ",
+                                   least_mean_grain_volume, " to 1, that of the largest grains"));
 }
 
 void SpotParameters::validate_critical_state() const {

@@ -40,7 +40,8 @@ double step_height_in_diameters(Accuracy accuracy);
 RelaxationParameters relaxation_of(Accuracy accuracy, const InfluenceProfile& profile);
 
 /// The longest window that these spots should have (time), by calibration::climb_in_a_window and flow_in_a_window.
-double longest_window(const SpotParameters& spots, double diameter, const Outlets& outlets);
+/// `diameter`: of a grain of mean volume; `largest`: of the largest one, by which the library counts.
+double longest_window(const SpotParameters& spots, double diameter, double largest, const Outlets& outlets);
 
 /// By Beverloo's law, the grains that leave through a hole per time; 0 where it is too narrow. Grains are taken to fill
 /// calibration::packing_fraction_of_flow. `gravity` in length / time^2.

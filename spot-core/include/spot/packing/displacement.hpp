@@ -18,8 +18,8 @@ using MovesReceived = std::unordered_map<std::int64_t, std::int64_t>;
 
 /// The weight of a move whose spot, with its middle at `height` above the outlet, encloses this grain volume (1024 =
 /// grain_volume), when spots carry a fixed one: N V part / max(grains, 20 V part), where `part` of the spot is above
-/// the outlet, V is `volume`, what it carries over that of a newborn one, and volumes are in those of a grain of the
-/// reference diameter (2010, section 3.3, with V = 1). V if the parameters say that they don't.
+/// the outlet, V is `volume`, what it carries over that of a newborn one, and volumes are in those of a grain of mean
+/// volume (2010, section 3.3, with V = 1). V if the parameters say that they don't.
 double fixed_volume_weight(const SpotParameters& parameters, double height, int enclosed, double volume = 1.0);
 
 /// No weight is larger.

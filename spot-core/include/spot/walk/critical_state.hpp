@@ -21,6 +21,7 @@ namespace spot {
 /// what its spot carries, and the difference stays in the packing.
 class CriticalState {
  public:
+  /// `diameter`: the reference diameter.
   CriticalState(const SpotParameters& parameters, double diameter);
 
   bool on() const { return fraction_ > 0.0; }

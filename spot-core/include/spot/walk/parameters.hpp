@@ -18,10 +18,13 @@ struct SpotParameters {
   double step_height = 0.0;  ///< dz: and by dz upwards (length)
   double speed = 0.0;        ///< v_s: mean drift speed of a spot (length / time)
   Injection injection_rate = 0.0;  ///< nu_s: births per time at each outlet (1 / time)
-  /// N: a spot always carries the free volume of w N grains of the reference diameter, whatever volume it encloses, of
-  /// which each grain's counts by its share of the influence (2010's fixed-volume weighting). In grain volumes.
+  /// N: a spot always carries the free volume of w N grains of mean volume, whatever volume it encloses, of which each
+  /// grain's counts by its share of the influence (2010's fixed-volume weighting).
   /// 0: every grain it encloses moves by -w dr (2006).
   double fixed_volume = 0.0;
+  /// The mean volume of the grains, over that of one of the reference diameter, which is that of the largest: from 1/8
+  /// to 1. 1: grains are equal.
+  double mean_grain_volume = 1.0;
   const InfluenceProfile* profile = InfluenceProfile::uniform;
   /// p: the chance that a step goes the way of the last one, without drawing (2006, section V: a persistent walk).
   double persistence = 0.0;
@@ -62,8 +65,10 @@ struct SpotParameters {
   /// V_s, the free volume that one spot carries through a packing of this packing fraction (length^3).
   double spot_volume(double packing_fraction) const;
   /// The grains' own volume that one spot takes out of the packing around it: that of w N grains, with a fixed volume,
-  /// or of as many as it encloses at the packing fraction of flow (length^3).
+  /// or of as many as it encloses at the packing fraction of flow (length^3). `diameter`: the reference diameter.
   double missing_volume(double diameter) const;
+  /// Of a grain of mean volume, where the reference diameter is this (length).
+  double mean_diameter(double diameter) const;
 
   /// Throws InvalidParameter that names the first number outside its range, or two that exclude each other.
   void validate() const;
