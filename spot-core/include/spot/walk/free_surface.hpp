@@ -37,9 +37,8 @@ class FreeSurface {
 
   double height(const Vector3& place) const;
 
-  /// 2010's rule for any number of candidates, of which the middles are given, and a uniform number from 0 to 1. They
-  /// are equally likely where all or none of the influence is below the surface.
-  std::size_t choose(const std::vector<Vector3>& middles, double uniform) const;
+  /// p^beta of a step with this middle, from 0 to 1: how likely it is, beside others, by 2010's rule.
+  double weight(const Vector3& middle) const;
 
   /// May a step from here reach above the surface? If not, all steps are alike.
   bool is_near(const Vector3& place) const { return place.z() + margin_ > lowest_; }

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "spot/geometry/container.hpp"
+#include "spot/walk/flow_field.hpp"
 #include "spot/walk/free_surface.hpp"
 #include "spot/walk/move.hpp"
 #include "spot/walk/parameters.hpp"
@@ -23,7 +24,7 @@ struct Spot {
 };
 
 /// How spots are born and walk. There is no state but the spot: all draws follow from (seed, spot id, step number). Of
-/// grains, walks know the free surface at most.
+/// grains, walks know the free surface at most; of other spots, how they have made the packing flow.
 ///
 /// A spot is born uniformly on what is R_s inside the rim of an outlet, and R_s below it: it
 /// enters the packing with its whole influence, so that as much leaves through the outlet as the spot
@@ -45,11 +46,11 @@ class SpotWalk {
 
   /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
   /// cell then; the middle of the step need not be.
-  Move step(Spot& spot, const Container& container, const FreeSurface& surface) const;
+  Move step(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const;
 
  private:
   void draw_next_step(Spot& spot) const;
-  void steer_by_surface(Spot& spot, const Container& container, const FreeSurface& surface) const;
+  void steer(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const;
 
   SpotParameters parameters_;
 };
