@@ -615,4 +615,37 @@ TEST(SpotsInvariance, SpotsOfWindowsLeaveWhatThoseInTheOrderOfTimeDo) {
   EXPECT_NE(in_order, in_the_order_of_time());
 }
 
+/// A flow that goes as e^(-x / 10) makes spots drift by (B / s - b_s) / 10 for each length that they climb.
+TEST(SpotWalkStatistical, SpotsDriftAsTheFlowIsSheared) {
+  const auto space = space_above_orifice();
+  SpotParameters parameters = scenes::paper_spots();
+  parameters.radius = 3.0;
+  parameters.fixed_volume = 77.0;
+  parameters.spread = 0.2;
+  spot::FlowField flow(parameters, *space, 1.0);
+  for (double x = -30.0; x <= 30.0; x += 0.75)
+    for (double y = -9.0; y <= 9.0; y += 0.75)
+      for (double z = 1.0; z <= 19.0; z += 0.75)
+        flow.add({0.0, 0, {x, y, z}, {0.0, 0.0, parameters.step_height}}, std::exp(-0.1 * x));
+  spot::Alone alone;
+  flow.update(0.1, alone);
+  const spot::FreeSurface surface(parameters, *space, 1.0);
+  const spot::SpotWalk walk(parameters, *space);
+  const Vector3 start(0.0, 0.0, 5.0), drift = flow.drift(start);
+  const double s = 2.0 / 3.0 * std::tanh(0.15);
+  EXPECT_NEAR(drift.x(), (parameters.spread / s - parameters.diffusion_length()) * s, 0.01);
+  const int number = 40000;
+  Vector3 mean = Vector3::Zero();
+  for (std::int64_t id = 0; id < number; ++id) {
+    Spot spot = walk.birth(id, 0.0, *space);
+    spot.position = start;
+    mean += walk.step(spot, *space, surface, flow).step / (number * parameters.step_height);
+  }
+  // Half of the steps go along each axis, by dx.
+  const double error = parameters.step_width / parameters.step_height / std::sqrt(2.0 * number);
+  EXPECT_NEAR(mean.x(), drift.x(), 4.0 * error) << "4 standard errors";
+  EXPECT_NEAR(mean.y(), 0.0, 4.0 * error);
+  EXPECT_GT(std::abs(drift.x()), 5.0 * error) << "it can be told from none";
+}
+
 }  // namespace

@@ -9,9 +9,9 @@ namespace spot {
 ///
 ///     1 / h = 1 / h_x + 1 / h_y,
 ///
-/// h_x and h_y being half of the free ways through the place along x and along y (length). Inside a rectangle h is its
-/// area over its perimeter, times two; on the axis of a cylinder it is half of the radius; between two plates it is half
-/// of their distance. Ways end at `farthest` on either side, a positive length. Meant for places above the outlets.
+/// h_x and h_y being half of the free ways through the place along x and along y (length). In a rectangle, and on
+/// the axis of a cylinder, h is the area of the cross-section over its perimeter (Janssen's length); between two plates
+/// it is half of their distance. Ways end at `farthest` on either side, a positive length. Meant for places above the outlets.
 double half_width(const Container& container, const Vector3& place, double farthest);
 
 }  // namespace spot
