@@ -26,9 +26,8 @@ constexpr double least_part_inside = 0.05;
 FlowField::FlowField(const SpotParameters& parameters, const Container& container, double diameter)
     : container_(&container),
       lattice_(container, std::max(parameters.radius, diameter)),
-      spread_(parameters.spread),
+      spreads_(parameters.spread > 0.0),
       wall_shear_(parameters.wall_shear),
-      diffusion_length_(parameters.diffusion_length()),
       memory_time_(calibration::climb_of_flow_memory * parameters.radius / parameters.speed),
       step_height_(parameters.step_height) {}
 
@@ -76,12 +75,25 @@ void FlowField::find_walls() {
     if (walls_[k] != unknown) return;
     walls_[k] = 0.0;
     if (wall_shear_ == 0.0 || volumes_[k] == 0.0) return;
-    Vector3 place = lattice_.point(node);
-    // Just above the outlets, of a lattice cell that their height cuts.
-    const double lowest = container_->outlets().height() + 1e-3 * lattice_.spacing().z();
-    place.z() = std::max(place.z(), lowest);
-    walls_[k] = wall_shear_ / half_width(*container_, place, calibration::farthest_walls * lattice_.spacing().x());
+    const double farthest = calibration::farthest_walls * lattice_.spacing().x();
+    walls_[k] = wall_shear_ / half_width(*container_, place_inside(node), farthest);
   });
+}
+
+/// A place inside the walls and above the outlets that is closest to a node, of some around it; the node if there is
+/// none.
+Vector3 FlowField::place_inside(const NodeLattice::Node& node) const {
+  const Vector3 middle = lattice_.point(node);
+  const double lowest = container_->outlets().height() + 1e-3 * lattice_.spacing().z();
+  for (const double shift : {0.0, 0.25, 0.5, 0.75})
+    for (const double x : {-shift, 0.0, shift})
+      for (const double y : {-shift, 0.0, shift})
+        for (const double z : {0.0, shift}) {
+          Vector3 place = middle + lattice_.spacing().cwiseProduct(Vector3(x, y, z));
+          place.z() = std::max(place.z(), lowest);
+          if (container_->contains(place)) return place;
+        }
+  return middle;
 }
 
 /// At a node, or `otherwise` in walls, across which nothing is sheared.
@@ -104,14 +116,13 @@ double FlowField::relative_slope(int axis, const NodeLattice::Node& node, double
 
 void FlowField::find_shear() {
   shear_.assign(box_.size(), 0.0);
-  drift_.assign(spread_ > 0.0 ? box_.size() : 0, Vector3::Zero());
+  slope_.assign(spreads_ ? box_.size() : 0, Vector3::Zero());
   box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
     if (volumes_[k] == 0.0) return;
     const double here = carried_[k] / volumes_[k];
     const double x = relative_slope(0, node, here), y = relative_slope(1, node, here);
-    const double slope = std::sqrt(x * x + y * y);
-    shear_[k] = slope + walls_[k];
-    if (spread_ > 0.0 && slope > 0.0) drift_[k] = (diffusion_length_ - spread_ / shear_[k]) * Vector3(x, y, 0.0);
+    shear_[k] = std::sqrt(x * x + y * y) + walls_[k];
+    if (spreads_) slope_[k] = Vector3(x, y, 0.0);
   });
 }
 
@@ -132,8 +143,9 @@ Value FlowField::mean_of(const std::vector<Value>& values, const Vector3& point,
 
 double FlowField::shear(const Vector3& point) const { return mean_of(shear_, point, 0.0); }
 
-Vector3 FlowField::drift(const Vector3& point) const {
-  return drift_.empty() ? Vector3(Vector3::Zero()) : mean_of(drift_, point, Vector3(Vector3::Zero()));
+Vector3 FlowField::slope(const Vector3& point) const {
+  const Vector3 none = Vector3::Zero();
+  return slope_.empty() ? none : mean_of(slope_, point, none);
 }
 
 void FlowField::replace_container(const Container& container) {
@@ -170,7 +182,7 @@ void FlowField::restore(ByteReader& saved) {
 }
 
 std::size_t FlowField::memory() const {
-  return bytes_in(added_, carried_, volumes_, walls_, shear_, drift_) + lattice_.memory();
+  return bytes_in(added_, carried_, volumes_, walls_, shear_, slope_) + lattice_.memory();
 }
 
 }  // namespace spot

@@ -89,8 +89,7 @@ void SpotParameters::validate_critical_state() const {
 
 void SpotParameters::validate_spread() const {
   if (!(spread >= 0.0 && spread <= calibration::largest_spread))
-    throw InvalidParameter(
-        message("spread is ", spread, " but must be from 0 (off) to ", calibration::largest_spread));
+    throw InvalidParameter(message("spread is ", spread, " but must be from 0 (off) to ", calibration::largest_spread));
   if (!(wall_shear >= 0.0 && wall_shear <= calibration::largest_wall_shear))
     throw InvalidParameter(message("shear by walls is ", wall_shear, " over their half-width but must be from 0 to ",
                                    calibration::largest_wall_shear));

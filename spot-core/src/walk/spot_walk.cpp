@@ -106,15 +106,23 @@ void SpotWalk::set_relative_speed(Spot& spot, double time, double relative_speed
   spot.relative_speed = relative_speed;
 }
 
-/// Chooses the direction once more, with the same number: by how much of the spot each would keep below the surface, and
-/// so that spots drift on average as the flow wants it.
+/// Of spots there, sideways, for each length that they climb.
+Vector3 SpotWalk::drift(const Vector3& place, const FreeSurface& surface, const FlowField& flow) const {
+  const double depth = surface.height(place) - place.z();
+  const double shear = flow.shear(place) + (depth > 0.0 ? parameters_.wall_shear / depth : 0.0);
+  if (!(shear > 0.0)) return Vector3::Zero();
+  return (parameters_.diffusion_length() - parameters_.spread / shear) * flow.slope(place);
+}
+
+/// Chooses the direction once more, with the same number: by how much of the spot each would keep below the surface,
+/// and so that spots drift on average as the flow wants it.
 void SpotWalk::steer(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const {
   const bool near_surface = surface.steers() && surface.is_near(spot.position), drifts = parameters_.spread > 0.0;
   if (!near_surface && !drifts) return;
   std::array<double, directions> weights = {1.0, 1.0, 1.0, 1.0};
   if (drifts) {
     // A step along x is one of two in four: chances (1 +- e) / 4 make a mean of e dx / 2 for each dz.
-    const Vector3 e = 2.0 * parameters_.step_height / parameters_.step_width * flow.drift(spot.position);
+    const Vector3 e = 2.0 * parameters_.step_height / parameters_.step_width * drift(spot.position, surface, flow);
     weights = {1.0 + e.x(), 1.0 - e.x(), 1.0 + e.y(), 1.0 - e.y()};
     for (double& weight : weights) weight = std::clamp(weight, 0.0, 2.0);
   }

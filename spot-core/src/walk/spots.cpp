@@ -20,7 +20,7 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       flow_(parameters, container, diameter),
       surface_(parameters, container, diameter),
       surface_interval_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
-      setting_interval_(dilates_ || shears_ || surface_.steers()
+      setting_interval_(dilates_ || shears_ || surface_.needed()
                             ? calibration::climb_between_settings * parameters.radius / parameters.speed
                             : 0.0) {}
 
@@ -166,7 +166,7 @@ void Spots::update_flow(double elapsed, Communicator& communicator) {
 
 void Spots::update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator) {
   constexpr double rounded = 1.0 + 1e-12;  // times of calls are sums of shorter intervals
-  if (!surface_.steers() || now * rounded < static_cast<double>(surfaces_) * surface_interval_) return;
+  if (!surface_.needed() || now * rounded < static_cast<double>(surfaces_) * surface_interval_) return;
   surfaces_ = static_cast<std::int64_t>(now * rounded / surface_interval_) + 1;
   surface_.clear();
   visit_grains([this](const Vector3& position) { surface_.add(position); });

@@ -20,17 +20,9 @@ namespace spot {
 ///
 ///     s = |grad_h u| / u + kappa / h    (1 / length)
 ///
-/// with grad_h across the vertical. The second term is what walls shear, at a half_width() of h, which the lattice is too
-/// coarse for. s says nothing of how fast the flow is: at a given place it stays as it is when more or fewer spots
+/// with grad_h across the vertical. The second term is what walls shear, at a half_width() of h, which the lattice is
+/// too coarse for. s says nothing of how fast the flow is: at a given place it stays as it is when more or fewer spots
 /// come. In DEM both the packing fraction and the width of the flow follow it (docs/notes/2026-11-28-flow-law.md).
-///
-/// Free volume spreads sideways as b du/dx, with a b that falls with s. Spots walk with b_s, and beside that drift,
-/// for each length that they climb, by
-///
-///     -(B / s - b_s) grad_h u / u,
-///
-/// so that they spread as b = B / s would have them, without steps that get longer the less is sheared: what nothing
-/// shears comes down as a plug (docs/notes/2026-11-29-plug-flow.md).
 ///
 /// Steps are counted on the nodes of a NodeLattice, R_s apart, but no closer than grains are; those that were made
 /// longer ago count for less, by a factor of e after calibration::climb_of_flow_memory.
@@ -48,8 +40,8 @@ class FlowField {
   /// s at a point (1 / length); 0 where no spot has been. As of the last update.
   double shear(const Vector3& point) const;
 
-  /// How far spots drift sideways for each length that they climb; nowhere without a spread. As of the last update.
-  Vector3 drift(const Vector3& point) const;
+  /// grad_h u / u at a point (1 / length); 0 where no spot has been. As of the last update.
+  Vector3 slope(const Vector3& point) const;
 
   /// Works out the volume inside the walls anew, as after these changed.
   void replace_container(const Container& container);
@@ -70,6 +62,7 @@ class FlowField {
   void grow_to(const NodeLattice::Box& box);
   void find_volumes();
   void find_walls();
+  Vector3 place_inside(const NodeLattice::Node& node) const;
   void find_shear();
   double flow(const NodeLattice::Node& node, double otherwise) const;
   double relative_slope(int axis, const NodeLattice::Node& node, double here) const;
@@ -78,7 +71,8 @@ class FlowField {
 
   const Container* container_;
   NodeLattice lattice_;
-  double spread_, wall_shear_, diffusion_length_;
+  bool spreads_;
+  double wall_shear_;
   double memory_time_, step_height_;
   std::vector<Step> added_;
   NodeLattice::Box box_;         // of the nodes where steps have been counted
@@ -86,7 +80,7 @@ class FlowField {
   std::vector<double> volumes_;  // inside the walls, around the same nodes; 0 where there is next to none
   std::vector<double> walls_;    // what they shear, at the same nodes; below 0 where that is not known yet
   std::vector<double> shear_;    // at the same nodes
-  std::vector<Vector3> drift_;   // at the same nodes, or nowhere
+  std::vector<Vector3> slope_;   // at the same nodes, if there is a spread
 };
 
 }  // namespace spot

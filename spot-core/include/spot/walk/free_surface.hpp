@@ -27,7 +27,10 @@ class FreeSurface {
   /// `diameter`: of grains. The container must outlive the surface, or be replaced.
   FreeSurface(const SpotParameters& parameters, const Container& container, double diameter);
 
+  /// Do spots ask which steps are likely?
   bool steers() const { return beta_ > 0.0; }
+  /// Does anybody ask anything?
+  bool needed() const { return needed_; }
 
   /// Forgets all grains.
   void clear();
@@ -57,6 +60,7 @@ class FreeSurface {
   double height_over(NodeLattice::Node column) const;
   void find_lowest();
 
+  bool needed_;
   const Container* container_;
   const InfluenceProfile* profile_;
   double radius_, beta_, margin_;

@@ -26,6 +26,15 @@ struct Spot {
 /// How spots are born and walk. There is no state but the spot: all draws follow from (seed, spot id, step number). Of
 /// grains, walks know the free surface at most; of other spots, how they have made the packing flow.
 ///
+/// Free volume spreads sideways as b du/dx, with a b that in DEM's flow falls with the shear s. Spots walk with b_s,
+/// and beside that drift, for each length that they climb, by
+///
+///     (b_s - B / (s + kappa / depth)) grad_h u / u
+///
+/// (FlowField), the depth being that below the free surface. So they spread as b = B / s would have them, without steps
+/// that get longer the less is sheared: what nothing shears comes down as a plug, which walls and the surface limit
+/// (docs/notes/2026-11-29-plug-flow.md).
+///
 /// A spot is born uniformly on what is R_s inside the rim of an outlet, and R_s below it: it
 /// enters the packing with its whole influence, so that as much leaves through the outlet as the spot
 /// brings down through any height above (volume closes; see docs/notes).
@@ -50,6 +59,7 @@ class SpotWalk {
 
  private:
   void draw_next_step(Spot& spot) const;
+  Vector3 drift(const Vector3& place, const FreeSurface& surface, const FlowField& flow) const;
   void steer(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const;
 
   SpotParameters parameters_;
