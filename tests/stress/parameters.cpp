@@ -248,15 +248,15 @@ void add_combinations(std::vector<Case>& cases, int number) {
     const double moves = scene.time_ordered ? 2e4 : 4e5;
     scene.time =
         std::min(4.0, std::sqrt(2.0 * moves / (scene.spots.injection_rate.largest() * scene.spots.move_rate())));
-    cases.push_back({"all at once",
-                     spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ",
-                                   scene.spots.radius, ", dz ", scene.spots.step_height, ", nu_s ",
-                                   scene.spots.injection_rate.largest(), ", c_0 ", scene.spots.dilation, ", phi_c ",
-                                   scene.spots.critical_fraction, ", l ", scene.spots.exchange_length, ", a ",
-                                   scene.spots.dilatancy, ", B ", scene.spots.spread, ", kappa ",
-                                   scene.spots.wall_shear, ", beta ", scene.spots.surface_exponent, ", momentum ",
-                                   scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
-                     scene, true});
+    cases.push_back(
+        {"all at once",
+         spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ", scene.spots.radius,
+                       ", dz ", scene.spots.step_height, ", nu_s ", scene.spots.injection_rate.largest(), ", c_0 ",
+                       scene.spots.dilation, ", phi_c ", scene.spots.critical_fraction, ", l ",
+                       scene.spots.exchange_length, ", a ", scene.spots.dilatancy, ", B ", scene.spots.spread,
+                       ", kappa ", scene.spots.wall_shear, ", beta ", scene.spots.surface_exponent, ", momentum ",
+                       scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
+         scene, true});
   }
 }
 
