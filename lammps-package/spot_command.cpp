@@ -147,6 +147,11 @@ const std::map<std::string, Reader>& readers() {
          c.spots.exchange_length = w.positive("the exchange length");
        }},
       {"dilatancy", [](SpotCommand& c, Words& w) { c.spots.dilatancy = w.not_negative("the dilatancy"); }},
+      {"spread",
+       [](SpotCommand& c, Words& w) {
+         c.spots.spread = w.not_negative("the spread");
+         c.spots.wall_shear = w.not_negative("the shear by walls");
+       }},
       {"surface",
        [](SpotCommand& c, Words& w) { c.spots.surface_exponent = w.not_negative("the exponent of the surface"); }},
       {"nonaffine",
@@ -263,6 +268,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"dilation", precise(spots.dilation)},
           {"critical", precise(spots.critical_fraction, ' ', spots.exchange_length)},
           {"dilatancy", precise(spots.dilatancy)},
+          {"spread", precise(spots.spread, ' ', spots.wall_shear)},
           {"surface", precise(spots.surface_exponent)},
           {"nonaffine", precise(spots.nonaffine, ' ', spots.nonaffine_length)},
           {"injection", outlets.text_of_rates()},

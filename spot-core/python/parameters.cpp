@@ -75,6 +75,8 @@ void bind_numbers(Class& c) {
   number(c, "critical_fraction", spots, &S::critical_fraction, "phi_c: packing fraction of what flows. 0: none.");
   number(c, "exchange_length", spots, &S::exchange_length, "Of climb, in which spots bring a packing to it (length).");
   number(c, "dilatancy", spots, &S::dilatancy, "a: shear s for each length of fall lowers phi_c by a s (length).");
+  number(c, "spread", spots, &S::spread, "B: sheared by s, free volume spreads sideways by B / s; 0: by b_s.");
+  number(c, "wall_shear", spots, &S::wall_shear, "kappa: walls shear by kappa over their half-width.");
   number(c, "surface_exponent", spots, &S::surface_exponent,
          "beta: how much rather spots go where the surface is higher.");
   number(c, "nonaffine", spots, &S::nonaffine, "S: how much grains go against their neighbours.");
@@ -104,9 +106,11 @@ Parameters::Parameters(double d, double tau) : diameter(d) {
   spots.speed = 2.5 * d / tau;
   spots.fixed_volume = 77.0;
   spots.dilation = 0.03;
-  spots.critical_fraction = 0.602;
+  spots.critical_fraction = 0.62;
   spots.exchange_length = 0.5 * d;
   spots.dilatancy = 0.15 * d;
+  spots.spread = 0.6;
+  spots.wall_shear = 0.7;
   spots.surface_exponent = 4.0;
   spots.nonaffine = 0.15;
   spots.nonaffine_length = 0.5 * d;

@@ -72,8 +72,8 @@ def test_everything_public_has_a_docstring():
 
 LOAD_SPOT = ROOT / "lammps-package" / "load_spot.lmp"
 needs_lmp = pytest.mark.skipif("SPOT_LMP" not in os.environ, reason="needs lmp: SPOT_LMP")
-MODEL = ("speed 2.5 dilation 0.03 volume 77 influence 1.5e-3 diffusion 1.47 critical 0.602 0.5 dilatancy 0.15 surface 4 "
-         "nonaffine 0.15 0.5 closing 0.004 0.15")
+MODEL = ("speed 2.5 dilation 0.03 volume 77 influence 1.5e-3 diffusion 1.47 critical 0.62 0.5 dilatancy 0.15 "
+         "spread 0.6 0.7 surface 4 nonaffine 0.15 0.5 closing 0.004 0.15")
 
 
 def run_lmp(folder, walls_and_outlets, positions, steps, window, box="-12 12 -12 12 -4 30", boundary="f f f", model=MODEL):
@@ -141,7 +141,7 @@ def test_same_bits_as_fix_spot(scene, tmp_path):
     positions = packing_of(scene)
     parameters = beads(critical_fraction=0.55)
     window, steps = 0.04, 150
-    there, ids = run_lmp(tmp_path, deck, positions, steps, window, model=MODEL.replace("0.602", "0.55"), **options)
+    there, ids = run_lmp(tmp_path, deck, positions, steps, window, model=MODEL.replace("critical 0.62", "critical 0.55"), **options)
     drainage = drain(Packing(positions, 0.5), walls, outlets, parameters, steps * window, window=window)
     assert drainage.time == steps * window
     here = drainage.packing
@@ -153,12 +153,13 @@ def test_same_bits_as_fix_spot(scene, tmp_path):
 def test_parameters_of_glass_beads_are_those_of_the_deck():
     text = (ROOT / "examples" / "own-hopper" / "in.own").read_text().replace("&\n", " ")
     assert re.search(r"speed \$\(2\.5\*v_d/v_t\) dilation 0\.03 volume 77 influence 1\.5e-3\s+diffusion \$\(1\.47\*v_d\) "
-                     r"critical 0\.602 \$\(0\.5\*v_d\) dilatancy \$\(0\.15\*v_d\) surface 4\s+nonaffine 0\.15 \$\(0\.5\*v_d\) "
+                     r"critical 0\.62 \$\(0\.5\*v_d\) dilatancy \$\(0\.15\*v_d\) spread 0\.6 0\.7\s+surface 4 "
+                     r"nonaffine 0\.15 \$\(0\.5\*v_d\) "
                      r"closing 0\.004 0\.15", text)
     p = Parameters.glass_beads(0.003, 0.0175)
     assert p.speed == pytest.approx(2.5 * 0.003 / 0.0175)
-    assert [p.dilation, p.volume, p.influence, p.critical_fraction, p.surface_exponent, p.nonaffine, p.closing_gap,
-            p.closing_share] == [0.03, 77, 1.5e-3, 0.602, 4, 0.15, 0.004, 0.15]
+    assert [p.dilation, p.volume, p.influence, p.critical_fraction, p.spread, p.wall_shear, p.surface_exponent, p.nonaffine,
+            p.closing_gap, p.closing_share] == [0.03, 77, 1.5e-3, 0.62, 0.6, 0.7, 4, 0.15, 0.004, 0.15]
     assert [p.diffusion_length, p.exchange_length, p.dilatancy, p.nonaffine_length] == pytest.approx(
         [1.47 * 0.003, 0.5 * 0.003, 0.15 * 0.003, 0.5 * 0.003])
 

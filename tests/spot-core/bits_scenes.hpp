@@ -44,7 +44,10 @@ class PinnedScenes {
     add_to_both_drivers(true);
     add_windowed();
     add_time_ordered();
-    for (const bool time_ordered : {false, true}) add(plain(time_ordered, "all-ingredients"), all_ingredients);
+    for (const bool time_ordered : {false, true}) {
+      add(plain(time_ordered, "all-ingredients"), all_ingredients);
+      add(plain(time_ordered, "spread"), spreading);
+    }
   }
   const std::vector<PinnedScene>& all() const { return all_; }
 
@@ -113,6 +116,15 @@ class PinnedScenes {
     scene.spots.injection_rate = 60.0;
     scene.grains = filling(14.0);
     scene.end = 3.0;
+  }
+
+  /// With all else, but for a persistence.
+  static void spreading(PinnedScene& scene) {
+    all_ingredients(scene);
+    scene.spots.persistence = 0.0;
+    scene.spots.step_width = spot::step_width_for(1.4, scene.spots.step_height);
+    scene.spots.spread = 0.6;
+    scene.spots.wall_shear = 0.7;
   }
 
   static void let_come_and_go(PinnedScene& scene) {

@@ -82,6 +82,7 @@ void expect_same_shear(const FlowField& one, const FlowField& other) {
       for (double z = -8.0; z < 20.0; z += 3.7) {
         const Vector3 at(x, y, z);
         ASSERT_EQ(one.shear(at), other.shear(at)) << at.transpose();
+        ASSERT_EQ(one.slope(at), other.slope(at)) << at.transpose();
       }
 }
 
@@ -242,6 +243,53 @@ TEST(FlowFieldAnalytic, WhereSpaceRepeatsTheFieldDoes) {
   }
 }
 
+SpotParameters spreading_spots() {
+  SpotParameters spots = wide_spots();
+  spots.spread = 0.6;
+  return spots;
+}
+
+TEST(FlowFieldAnalytic, AnExponentialSlopesEvenly) {
+  const auto space = scenes::empty_space();
+  for (const Vector3& k : {Vector3(0.1, 0.0, 0.0), Vector3(0.0, -0.2, 0.0), Vector3(0.15, 0.2, 0.0)}) {
+    FlowField field(spreading_spots(), *space, 1.0);
+    add(field, planted({-15, -15, -6}, {15, 15, 6}, 0.75, [&](const Vector3& at) { return std::exp(k.dot(at)); }));
+    Alone alone;
+    field.update(0.1, alone);
+    const auto along = [&](int axis) { return 2.0 / spacing * std::tanh(0.5 * spacing * k[axis]); };
+    const Vector3 expected(along(0), along(1), 0.0);
+    for (const Vector3& at : {Vector3(0, 0, 0), Vector3(3, -3, 0), Vector3(1.1, 2.3, -0.7)})
+      EXPECT_LT((field.slope(at) - expected).norm(), 0.002) << k.transpose();
+  }
+}
+
+/// Between plates at +-4 they shear by kappa / 4 everywhere, besides what the flow itself does.
+TEST(FlowFieldAnalytic, WallsShearWhatFallsBetweenThem) {
+  SpotParameters spots = wide_spots();
+  spots.wall_shear = 0.7;
+  const auto narrow = scenes::small_silo(1e6, 4.0);
+  const Vector3 k(0.1, 0.0, 0.0);
+  FlowField field(spots, *narrow, 1.0);
+  add(field, planted({-15, -4, 1}, {15, 4, 13}, 0.5, [&](const Vector3& at) { return std::exp(k.dot(at)); }));
+  Alone alone;
+  field.update(0.1, alone);
+  const double far = spot::calibration::farthest_walls * spacing;
+  const double slope = 2.0 / spacing * std::tanh(0.5 * spacing * k.x()), s = slope + 0.7 * (1.0 / 4.0 + 1.0 / far);
+  for (const Vector3& at : {Vector3(0, 0, 6), Vector3(2.0, 1.0, 7.3)}) {
+    EXPECT_NEAR(field.shear(at), s, 0.01) << at.transpose();
+  }
+  const auto wide = scenes::small_silo(1e6, 8.0);
+  field.replace_container(*wide);
+  EXPECT_NEAR(field.shear({0.0, 0.0, 6.0}) - slope, 0.7 * (1.0 / 8.0 + 1.0 / far), 0.02);
+}
+
+TEST(FlowFieldUnit, WithoutASpreadNobodyAsksForSlopes) {
+  const auto space = scenes::empty_space();
+  const FlowField field = field_of(random_steps(200, {-9, -7, -4}, {8, 9, 11}, 1), *space);
+  EXPECT_GT(field.shear({1, 1, 1}), 0.0);
+  EXPECT_EQ(field.slope({1, 1, 1}), Vector3(Vector3::Zero()));
+}
+
 TEST(FlowFieldUnit, WhereNoSpotHasBeenNothingIsSheared) {
   const auto silo = scenes::small_silo(6.0, 6.0);
   Alone alone;
@@ -328,13 +376,13 @@ TEST(FlowFieldInvariance, RanksChangeNothing) {
     return random_steps(200, {-5, -4, 1}, {3, 4, 6.0 + 5.0 * k}, 30 + static_cast<std::uint64_t>(k));
   };
   Alone alone;
-  FlowField one(wide_spots(), *silo, 1.0);
+  FlowField one(spreading_spots(), *silo, 1.0);
   for (int k = 0; k < 3; ++k) {
     add(one, steps_of(k));
     one.update(2.0, alone);
   }
   scenes::on_ranks(3, [&](std::shared_ptr<spot::Communicator> communicator) {
-    FlowField field(wide_spots(), *silo, 1.0);
+    FlowField field(spreading_spots(), *silo, 1.0);
     for (int k = 0; k < 3; ++k) {
       const auto steps = steps_of(k);
       // In the second update all steps are of the last rank.

@@ -79,27 +79,19 @@ TEST(FreeSurfaceUnit, WithoutGrainsItIsAtTheOutlets) {
       << "grains that fall out of the orifice are no surface";
 }
 
-TEST(FreeSurfaceAnalytic, ChoosesByPowersOfTheShareBelow) {
+TEST(FreeSurfaceAnalytic, StepsWeighAsPowersOfTheirShareBelow) {
   const auto silo = scenes::small_silo(8.0, 4.0);
-  std::vector<Vector3> steps = {{-6.0, 0.0, 0.0}, {6.0, 0.0, 0.0}};
   std::vector<Vector3> grains;
   for (int x = -4; x <= 4; ++x)
     for (int y = -2; y <= 2; ++y) grains.emplace_back(2.0 * x, 2.0 * y, x < 0 ? 10.0 : 11.0);
   for (const double exponent : {1.0, 3.0}) {
     const SpotParameters spots = steered_spots(exponent);
     const FreeSurface surface = surface_of(grains, spots, *silo);
-    for (Vector3& step : steps) step.z() = 10.0;
-    const double low = std::pow(spots.profile->part_above(0.0), exponent);
-    const double high = std::pow(spots.profile->part_above(1.0 / spots.radius), exponent);
-    const double boundary = low / (low + high);
-    EXPECT_EQ(surface.choose(steps, boundary - 1e-6), 0u);
-    EXPECT_EQ(surface.choose(steps, boundary + 1e-6), 1u);
-    for (Vector3& step : steps) step.z() = 2.0;  // deep below
-    EXPECT_EQ(surface.choose(steps, 0.4999), 0u);
-    EXPECT_EQ(surface.choose(steps, 0.5), 1u);
-    for (Vector3& step : steps) step.z() = 50.0;  // high above
-    EXPECT_EQ(surface.choose(steps, 0.4999), 0u);
-    EXPECT_EQ(surface.choose(steps, 0.5), 1u);
+    EXPECT_NEAR(surface.weight({-6.0, 0.0, 10.0}), std::pow(spots.profile->part_above(0.0), exponent), 1e-12);
+    EXPECT_NEAR(surface.weight({6.0, 0.0, 10.0}), std::pow(spots.profile->part_above(1.0 / spots.radius), exponent),
+                1e-12);
+    EXPECT_NEAR(surface.weight({6.0, 0.0, 2.0}), 1.0, 1e-12) << "deep below";
+    EXPECT_EQ(surface.weight({6.0, 0.0, 50.0}), 0.0) << "high above";
   }
 }
 
@@ -108,6 +100,7 @@ TEST(FreeSurfaceUnit, FarBelowItAllStepsAreAsWithoutIt) {
   const SpotParameters spots = steered_spots(), free = steered_spots(0.0);
   const FreeSurface surface = surface_of(grains_under(0.5, 1), spots, *silo);
   const FreeSurface none = surface_of({}, free, *silo);
+  const spot::FlowField flow(spots, *silo, 1.0);
   const spot::SpotWalk steered(spots, *silo), unsteered(free, *silo);
   EXPECT_FALSE(surface.is_near({0.0, 0.0, -3.0}));
   int different = 0;
@@ -115,8 +108,8 @@ TEST(FreeSurfaceUnit, FarBelowItAllStepsAreAsWithoutIt) {
     spot::Spot one = steered.birth(id, 0.0, *silo), other = unsteered.birth(id, 0.0, *silo);
     for (int step = 0; step < 200; ++step) {
       const bool near = surface.is_near(one.position);
-      steered.step(one, *silo, surface);
-      unsteered.step(other, *silo, none);
+      steered.step(one, *silo, surface, flow);
+      unsteered.step(other, *silo, none, flow);
       if (!near && different == 0) {
         EXPECT_EQ(one.position, other.position);
       }
@@ -136,11 +129,12 @@ TEST(FreeSurfaceStatistical, SpotsGoWhereItIsHigher) {
   const SpotParameters spots = steered_spots();
   const FreeSurface surface = surface_of(grains_under(0.5, 2, 20000), spots, *silo);
   const spot::SpotWalk walk(spots, *silo);
+  const spot::FlowField flow(spots, *silo, 1.0);
   int up = 0, down = 0;
   for (std::int64_t id = 0; id < 4000; ++id) {
     spot::Spot spot = walk.birth(id, 0.0, *silo);
     spot.position = {0.0, 0.0, 10.0};
-    const spot::Move move = walk.step(spot, *silo, surface);
+    const spot::Move move = walk.step(spot, *silo, surface, flow);
     up += move.step.x() > 0.0;
     down += move.step.x() < 0.0;
   }

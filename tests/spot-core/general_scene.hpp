@@ -124,6 +124,10 @@ class GeneralScene {
       spots_.nonaffine_length = d * draws.uniform(0.05, 2.0);
     }
     if (!equal_ && draws.below(2) == 0) count_in_mean_grains();
+    if (draws.below(2) == 0 && spots_.fixed_volume > 0.0 && spots_.persistence == 0.0) {
+      spots_.spread = draws.uniform(0.05, 2.0);
+      spots_.wall_shear = draws.uniform(0.0, 2.0);
+    }
   }
 
   std::unique_ptr<spot::TimeOrderedDrainage> start_time_ordered() const {
@@ -171,7 +175,8 @@ class GeneralScene {
                          repeats_y_ ? ", repeats along y" : "", ", R_s = ", spots_.radius / diameter_,
                          ", w = ", spots_.influence, ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation,
                          ", phi_c = ", spots_.critical_fraction, ", l = ", spots_.exchange_length,
-                         ", a = ", spots_.dilatancy, ", beta = ", spots_.surface_exponent, ", S = ", spots_.nonaffine);
+                         ", a = ", spots_.dilatancy, ", beta = ", spots_.surface_exponent, ", S = ", spots_.nonaffine,
+                         ", B = ", spots_.spread);
   }
 
  private:

@@ -172,6 +172,31 @@ TEST(ParametersUnit, DilatancyIsNotNegativeAndLowersACriticalPackingFraction) {
   EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("dilatancy is 0.1 "), HasSubstr("needs a critical packing fraction")));
 }
 
+TEST(ParametersUnit, SpreadAndShearByWallsAreBounded) {
+  SpotParameters spots = critical_spots();
+  EXPECT_EQ(spots.spread, 0.0);
+  for (const double good : {0.0, 0.6, 2.0}) {
+    spots.spread = good;
+    spots.wall_shear = 2.0 * good;
+    EXPECT_NO_THROW(spots.validate());
+  }
+  for (const double bad : {-0.1, 2.1, infinity, -infinity, std::nan("")}) {
+    spots.spread = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("spread is "), HasSubstr("from 0 (off) to 2")));
+  }
+  spots.spread = 0.6;
+  for (const double bad : {-0.1, 4.1, infinity, -infinity, std::nan("")}) {
+    spots.wall_shear = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("shear by walls is "), HasSubstr("from 0 to 4")));
+  }
+  spots.wall_shear = 0.7;
+  spots.persistence = 0.3;
+  EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("spread is 0.6 "), HasSubstr("persistence, 0.3")));
+  spots = scenes::paper_spots();
+  spots.spread = 0.6;
+  EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("spread is 0.6 "), HasSubstr("no fixed volume")));
+}
+
 TEST(ParametersUnit, NonaffineMotionIsUpToHalfTheFallAndHasALength) {
   SpotParameters spots = scenes::paper_spots();
   EXPECT_EQ(spots.nonaffine, 0.0);

@@ -615,4 +615,47 @@ TEST(SpotsInvariance, SpotsOfWindowsLeaveWhatThoseInTheOrderOfTimeDo) {
   EXPECT_NE(in_order, in_the_order_of_time());
 }
 
+/// A flow that goes as e^(-x / 10) makes spots drift by (B / s - b_s) / 10 for each length that they climb; near the
+/// surface, where s is larger by kappa over the depth, by less.
+TEST(SpotWalkStatistical, SpotsDriftAsTheFlowIsSheared) {
+  const auto space = space_above_orifice();
+  SpotParameters parameters = scenes::paper_spots();
+  parameters.radius = 3.0;
+  parameters.fixed_volume = 77.0;
+  parameters.spread = 0.2;
+  spot::FlowField flow(parameters, *space, 1.0);
+  for (double x = -30.0; x <= 30.0; x += 0.75)
+    for (double y = -9.0; y <= 9.0; y += 0.75)
+      for (double z = 1.0; z <= 19.0; z += 0.75)
+        flow.add({0.0, 0, {x, y, z}, {0.0, 0.0, parameters.step_height}}, std::exp(-0.1 * x));
+  spot::Alone alone;
+  flow.update(0.1, alone);
+  const double slope = 2.0 / 3.0 * std::tanh(0.15);
+  const Vector3 start(0.0, 0.0, 8.0);
+  ASSERT_NEAR(flow.slope(start).x(), -slope, 0.002);
+  // As deep as on the lattice, and 4 below it.
+  for (const auto& [wall_shear, shear] : {std::pair(0.0, slope), std::pair(0.5, slope + 0.5 / 4.0)}) {
+    parameters.wall_shear = wall_shear;
+    spot::FreeSurface surface(parameters, *space, 1.0);
+    for (double x = -20.0; x <= 20.0; x += 0.5)
+      for (double y = -20.0; y <= 20.0; y += 0.5) surface.add({x, y, 12.0});
+    surface.gather(alone);
+    const spot::SpotWalk walk(parameters, *space);
+    const int number = 40000;
+    Vector3 mean = Vector3::Zero();
+    for (std::int64_t id = 0; id < number; ++id) {
+      Spot spot = walk.birth(id, 0.0, *space);
+      spot.position = start;
+      mean += walk.step(spot, *space, surface, flow).step / (number * parameters.step_height);
+    }
+    // Half of the steps go along each axis, by dx.
+    const double error = parameters.step_width / parameters.step_height / std::sqrt(2.0 * number);
+    const double drift = (parameters.spread / shear - parameters.diffusion_length()) * slope;
+    EXPECT_NEAR(mean.x(), drift, 4.0 * error + 0.002) << "4 standard errors, and the lattice's";
+    EXPECT_NEAR(mean.y(), 0.0, 4.0 * error + 0.002);
+    EXPECT_GT(std::abs(drift - (0.2 / 0.1 - parameters.diffusion_length()) * 0.1 * (wall_shear > 0.0)), 5.0 * error)
+        << "it can be told from none, and from that without the surface";
+  }
+}
+
 }  // namespace

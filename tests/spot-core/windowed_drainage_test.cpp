@@ -103,7 +103,7 @@ class PlainWindows {
     }
     for (Live& live : live_) {
       while (live.spot.next_step <= until && !live.out)
-        moves_of_window_.emplace_back(walk_.step(live.spot, *silo_, surface_), &live);
+        moves_of_window_.emplace_back(walk_.step(live.spot, *silo_, surface_, flow_), &live);
     }
     packing_.draw_tilts(spots_);
     // All are weighed before the first is carried out.
@@ -156,7 +156,7 @@ struct Spots {
   bool together;
   bool parabolic = false;
   double dilation = 0.0;
-  double critical_fraction = 0.0, dilatancy = 0.0, surface_exponent = 0.0, nonaffine = 0.0;
+  double critical_fraction = 0.0, dilatancy = 0.0, surface_exponent = 0.0, nonaffine = 0.0, spread = 0.0;
 };
 
 class WindowedDrainageBruteForce : public testing::TestWithParam<Spots> {};
@@ -174,6 +174,8 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   spots.surface_exponent = GetParam().surface_exponent;
   spots.nonaffine = GetParam().nonaffine;
   spots.nonaffine_length = 0.05;
+  spots.spread = GetParam().spread;
+  spots.wall_shear = 0.7;
   if (GetParam().parabolic) spots.profile = spot::InfluenceProfile::parabolic;
   RelaxationParameters never;
   never.tolerance = 1e6;
@@ -205,7 +207,8 @@ INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
                                          Spots{"Dilatancy", 77.0, false, true, 0.03, 0.6, 0.1},
                                          Spots{"Nonaffine", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.2},
                                          Spots{"Surface", 77.0, false, true, 0.0, 0.0, 0.0, 3.0},
-                                         Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 3.0}),
+                                         Spots{"Spread", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.6},
+                                         Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 3.0, 0.2, 0.6}),
                          [](const auto& spots) { return spots.param.name; });
 
 TEST(WindowedDrainageInvariance, ARerunIsIdentical) {

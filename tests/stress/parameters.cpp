@@ -68,6 +68,11 @@ void add_parameters(std::vector<Case>& cases) {
              [](Scene& s, double v) { s.spots.exchange_length = v; });
   add_values(cases, "dilatancy a / d", {0, 1e-6, 0.15, 0.5, 1.176, 1.177, 10},
              [](Scene& s, double v) { s.spots.dilatancy = v; });
+  add_values(cases, "spread B", {0, 1e-6, 0.1, 0.6, 2, 2.1}, [](Scene& s, double v) { s.spots.spread = v; });
+  add_values(cases, "spread 0.6, walls' kappa", {0, 1e-6, 0.7, 4, 4.1}, [](Scene& s, double v) {
+    s.spots.spread = 0.6;
+    s.spots.wall_shear = v;
+  });
   add_values(cases, "surface beta", {0, 1e-6, 0.5, 3, 10, 32, 33},
              [](Scene& s, double v) { s.spots.surface_exponent = v; });
 }
@@ -191,6 +196,8 @@ void add_odd_numbers(std::vector<Case>& cases) {
       {"phi_c", [](Scene& s, double v) { s.spots.critical_fraction = v; }},
       {"l", [](Scene& s, double v) { s.spots.exchange_length = v; }},
       {"a", [](Scene& s, double v) { s.spots.dilatancy = v; }},
+      {"B", [](Scene& s, double v) { s.spots.spread = v; }},
+      {"kappa", [](Scene& s, double v) { s.spots.wall_shear = v; }},
       {"beta", [](Scene& s, double v) { s.spots.surface_exponent = v; }},
       {"alpha", [](Scene& s, double v) { s.relaxation.alpha = v; }},
       {"momentum", [](Scene& s, double v) { s.relaxation.momentum = v; }},
@@ -226,6 +233,8 @@ void add_combinations(std::vector<Case>& cases, int number) {
     scene.spots.critical_fraction = draws.uniform(0.5, 0.55);
     scene.spots.exchange_length = scene.spots.step_height * log_uniform(0.1, 100.0);
     scene.spots.dilatancy = draws.below(2) == 0 ? 0.0 : scene.spots.radius * log_uniform(1e-3, 0.34);
+    scene.spots.spread = draws.below(2) == 0 ? 0.0 : log_uniform(0.01, 2.0);
+    scene.spots.wall_shear = draws.below(2) == 0 ? 0.0 : log_uniform(0.01, 4.0);
     if (draws.below(2) == 0) scene.set_no_fixed_volume();
     scene.spots.surface_exponent = draws.below(2) == 0 ? 0.0 : log_uniform(0.01, 32.0);
     scene.spots.dilation = draws.below(2) == 0 ? 0.0 : log_uniform(1e-3, 0.5);
@@ -238,14 +247,15 @@ void add_combinations(std::vector<Case>& cases, int number) {
     const double moves = scene.time_ordered ? 2e4 : 4e5;
     scene.time =
         std::min(4.0, std::sqrt(2.0 * moves / (scene.spots.injection_rate.largest() * scene.spots.move_rate())));
-    cases.push_back({"all at once",
-                     spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ",
-                                   scene.spots.radius, ", dz ", scene.spots.step_height, ", nu_s ",
-                                   scene.spots.injection_rate.largest(), ", c_0 ", scene.spots.dilation, ", phi_c ",
-                                   scene.spots.critical_fraction, ", l ", scene.spots.exchange_length, ", a ",
-                                   scene.spots.dilatancy, ", beta ", scene.spots.surface_exponent, ", momentum ",
-                                   scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
-                     scene, true});
+    cases.push_back(
+        {"all at once",
+         spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ", scene.spots.radius,
+                       ", dz ", scene.spots.step_height, ", nu_s ", scene.spots.injection_rate.largest(), ", c_0 ",
+                       scene.spots.dilation, ", phi_c ", scene.spots.critical_fraction, ", l ",
+                       scene.spots.exchange_length, ", a ", scene.spots.dilatancy, ", B ", scene.spots.spread,
+                       ", kappa ", scene.spots.wall_shear, ", beta ", scene.spots.surface_exponent, ", momentum ",
+                       scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
+         scene, true});
   }
 }
 

@@ -36,7 +36,9 @@ void Scene::set_step_height(double height) {
   spots.step_width = spot::step_width_for(1.45, height);
 }
 
-void Scene::set_no_fixed_volume() { spots.fixed_volume = spots.critical_fraction = spots.dilatancy = 0.0; }
+void Scene::set_no_fixed_volume() {
+  spots.fixed_volume = spots.critical_fraction = spots.dilatancy = spots.spread = 0.0;
+}
 
 void Scene::set_radius(double radius) {
   spots.radius = radius;

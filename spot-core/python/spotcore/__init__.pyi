@@ -85,6 +85,8 @@ class Parameters:
     critical_fraction: float
     exchange_length: float
     dilatancy: float
+    spread: float
+    wall_shear: float
     surface_exponent: float
     nonaffine: float
     nonaffine_length: float

@@ -7,6 +7,7 @@
 #include "spot/base/elementary.hpp"
 #include "spot/base/errors.hpp"
 #include "spot/base/memory.hpp"
+#include "spot/geometry/half_width.hpp"
 #include "spot/walk/calibration.hpp"
 
 namespace spot {
@@ -15,13 +16,18 @@ namespace {
 
 constexpr double carried_parts = 1 << 16;
 
+constexpr double unknown = -1.0;
+
 /// Of a lattice cell: with less of it inside the walls, a node is taken to be in the wall.
 constexpr double least_part_inside = 0.05;
 
 }  // namespace
 
 FlowField::FlowField(const SpotParameters& parameters, const Container& container, double diameter)
-    : lattice_(container, std::max(parameters.radius, diameter)),
+    : container_(&container),
+      lattice_(container, std::max(parameters.radius, diameter)),
+      spreads_(parameters.spread > 0.0),
+      wall_shear_(parameters.wall_shear),
       memory_time_(calibration::climb_of_flow_memory * parameters.radius / parameters.speed),
       step_height_(parameters.step_height) {}
 
@@ -50,8 +56,10 @@ void FlowField::grow_to(const NodeLattice::Box& box) {
   const NodeLattice::Box grown = box_.united(box);
   if (grown == box_) return;
   carried_ = box_.values_in(grown, carried_, 0.0);
+  walls_ = box_.values_in(grown, walls_, unknown);
   box_ = grown;
   find_volumes();
+  find_walls();
 }
 
 void FlowField::find_volumes() {
@@ -62,6 +70,32 @@ void FlowField::find_volumes() {
   });
 }
 
+void FlowField::find_walls() {
+  box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
+    if (walls_[k] != unknown) return;
+    walls_[k] = 0.0;
+    if (wall_shear_ == 0.0 || volumes_[k] == 0.0) return;
+    const double farthest = calibration::farthest_walls * lattice_.spacing().x();
+    walls_[k] = wall_shear_ / half_width(*container_, place_inside(node), farthest);
+  });
+}
+
+/// A place inside the walls and above the outlets that is closest to a node, of some around it; the node if there is
+/// none.
+Vector3 FlowField::place_inside(const NodeLattice::Node& node) const {
+  const Vector3 middle = lattice_.point(node);
+  const double lowest = container_->outlets().height() + 1e-3 * lattice_.spacing().z();
+  for (const double shift : {0.0, 0.25, 0.5, 0.75})
+    for (const double x : {-shift, 0.0, shift})
+      for (const double y : {-shift, 0.0, shift})
+        for (const double z : {0.0, shift}) {
+          Vector3 place = middle + lattice_.spacing().cwiseProduct(Vector3(x, y, z));
+          place.z() = std::max(place.z(), lowest);
+          if (container_->contains(place)) return place;
+        }
+  return middle;
+}
+
 /// At a node, or `otherwise` in walls, across which nothing is sheared.
 double FlowField::flow(const NodeLattice::Node& unwrapped, double otherwise) const {
   const NodeLattice::Node node = lattice_.wrapped(unwrapped);
@@ -70,8 +104,8 @@ double FlowField::flow(const NodeLattice::Node& unwrapped, double otherwise) con
   return volumes_[k] > 0.0 ? carried_[k] / volumes_[k] : otherwise;
 }
 
-/// Between 0 and two over the spacing.
-double FlowField::shear_along(int axis, const NodeLattice::Node& node, double here) const {
+/// Of the flow, over itself: two over the spacing at most.
+double FlowField::relative_slope(int axis, const NodeLattice::Node& node, double here) const {
   NodeLattice::Node before = node, after = node;
   --before[static_cast<std::size_t>(axis)];
   ++after[static_cast<std::size_t>(axis)];
@@ -82,29 +116,44 @@ double FlowField::shear_along(int axis, const NodeLattice::Node& node, double he
 
 void FlowField::find_shear() {
   shear_.assign(box_.size(), 0.0);
+  slope_.assign(spreads_ ? box_.size() : 0, Vector3::Zero());
   box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
     if (volumes_[k] == 0.0) return;
     const double here = carried_[k] / volumes_[k];
-    const double x = shear_along(0, node, here), y = shear_along(1, node, here);
-    shear_[k] = std::sqrt(x * x + y * y);
+    const double x = relative_slope(0, node, here), y = relative_slope(1, node, here);
+    shear_[k] = std::sqrt(x * x + y * y) + walls_[k];
+    if (spreads_) slope_[k] = Vector3(x, y, 0.0);
   });
 }
 
-double FlowField::shear(const Vector3& point) const {
-  double sum = 0.0, volume = 0.0;
+/// Between nodes, each counted by the volume around it; `none` where there is none.
+template <typename Value>
+Value FlowField::mean_of(const std::vector<Value>& values, const Vector3& point, Value none) const {
+  Value sum = none;
+  double volume = 0.0;
   for (const NodeLattice::Corner& corner : lattice_.corners(point)) {
     if (!box_.contains(corner.node)) continue;
     const std::size_t k = box_.place(corner.node);
     const double weight = static_cast<double>(corner.weight) * volumes_[k];
-    sum += weight * shear_[k];
+    sum += weight * values[k];
     volume += weight;
   }
-  return volume > 0.0 ? sum / volume : 0.0;
+  return volume > 0.0 ? Value(sum / volume) : none;
+}
+
+double FlowField::shear(const Vector3& point) const { return mean_of(shear_, point, 0.0); }
+
+Vector3 FlowField::slope(const Vector3& point) const {
+  const Vector3 none = Vector3::Zero();
+  return slope_.empty() ? none : mean_of(slope_, point, none);
 }
 
 void FlowField::replace_container(const Container& container) {
+  container_ = &container;
   lattice_.replace_container(container);
   find_volumes();
+  walls_.assign(box_.size(), unknown);
+  find_walls();
   find_shear();
 }
 
@@ -127,9 +176,13 @@ void FlowField::restore(ByteReader& saved) {
     added_.push_back({middle, saved.take<std::int64_t>()});
   }
   find_volumes();
+  walls_.assign(box_.size(), unknown);
+  find_walls();
   find_shear();
 }
 
-std::size_t FlowField::memory() const { return bytes_in(added_, carried_, volumes_, shear_) + lattice_.memory(); }
+std::size_t FlowField::memory() const {
+  return bytes_in(added_, carried_, volumes_, walls_, shear_, slope_) + lattice_.memory();
+}
 
 }  // namespace spot

@@ -21,7 +21,8 @@ constexpr double none = -std::numeric_limits<double>::infinity();
 }  // namespace
 
 FreeSurface::FreeSurface(const SpotParameters& parameters, const Container& container, double diameter)
-    : container_(&container),
+    : needed_(parameters.surface_exponent > 0.0 || parameters.spread > 0.0),
+      container_(&container),
       profile_(parameters.profile),
       radius_(parameters.radius),
       beta_(parameters.surface_exponent),
@@ -97,23 +98,10 @@ double FreeSurface::height(const Vector3& place) const {
   return (1.0 - (y - low_y)) * along_x(row) + (y - low_y) * along_x(row + 1);
 }
 
-std::size_t FreeSurface::choose(const std::vector<Vector3>& middles, double uniform) const {
-  std::vector<double> weights;
-  double sum = 0.0;
-  for (const Vector3& middle : middles) {
-    // As much of it is below the surface as is above a plane as far on the other side.
-    const double below = profile_->part_above((height(middle) - middle.z()) / radius_);
-    weights.push_back(pow(std::clamp(below, 0.0, 1.0), beta_));  // of rounded sums, which may be below 0
-    sum += weights.back();
-  }
-  const std::size_t last = middles.size() - 1;
-  if (sum == 0.0) return std::min(last, static_cast<std::size_t>(uniform * static_cast<double>(middles.size())));
-  double left = uniform * sum;
-  for (std::size_t k = 0; k < last; ++k) {
-    if (left < weights[k]) return k;
-    left -= weights[k];
-  }
-  return last;
+double FreeSurface::weight(const Vector3& middle) const {
+  // As much of it is below the surface as is above a plane as far on the other side.
+  const double below = profile_->part_above((height(middle) - middle.z()) / radius_);
+  return pow(std::clamp(below, 0.0, 1.0), beta_);  // of rounded sums, which may be below 0
 }
 
 void FreeSurface::replace_container(const Container& container) {

@@ -54,6 +54,7 @@ void SpotParameters::validate() const {
   if (!(dilation >= 0.0 && dilation < 1.0))
     throw InvalidParameter(message("spot dilation is ", dilation, " but must be from 0 (off) to below 1"));
   validate_critical_state();
+  validate_spread();
   if (!(surface_exponent >= 0.0 && surface_exponent <= calibration::largest_surface_exponent))
     throw InvalidParameter(message("surface exponent is ", surface_exponent, " but must be from 0 (off) to ",
                                    calibration::largest_surface_exponent));
@@ -95,6 +96,19 @@ void SpotParameters::validate_critical_state() const {
   if (fixed_volume == 0.0)
     throw InvalidParameter(message("critical packing fraction is ", critical_fraction,
                                    " but spots carry no fixed volume, of which they could leave some"));
+}
+
+void SpotParameters::validate_spread() const {
+  if (!(spread >= 0.0 && spread <= calibration::largest_spread))
+    throw InvalidParameter(message("spread is ", spread, " but must be from 0 (off) to ", calibration::largest_spread));
+  if (!(wall_shear >= 0.0 && wall_shear <= calibration::largest_wall_shear))
+    throw InvalidParameter(message("shear by walls is ", wall_shear, " over their half-width but must be from 0 to ",
+                                   calibration::largest_wall_shear));
+  if (spread > 0.0 && persistence > 0.0)
+    throw InvalidParameter(message("spread is ", spread, " but must be 0 for spots with a persistence, ", persistence));
+  if (spread > 0.0 && fixed_volume == 0.0)
+    throw InvalidParameter(
+        message("spread is ", spread, " but spots carry no fixed volume, by which the flow could be told"));
 }
 
 void SpotParameters::validate_nonaffine_motion() const {

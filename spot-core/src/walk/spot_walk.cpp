@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/walk/spot_walk.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
 
 #include "spot/base/errors.hpp"
 #include "spot/base/random.hpp"
@@ -40,6 +41,20 @@ Vector3 step_vector(const SpotParameters& p, double uniform) {
     default:
       return {0.0, -p.step_width, p.step_height};
   }
+}
+
+/// One of them, by their weights and a uniform number; all are equally likely where none has any weight.
+int chosen(const std::array<double, directions>& weights, double uniform) {
+  double sum = 0.0;
+  for (const double weight : weights) sum += weight;
+  if (sum == 0.0) return std::min(directions - 1, static_cast<int>(uniform * directions));
+  double left = uniform * sum;
+  for (int k = 0; k < directions - 1; ++k) {
+    const double weight = weights[static_cast<std::size_t>(k)];
+    if (left < weight) return k;
+    left -= weight;
+  }
+  return directions - 1;
 }
 
 /// The number that gives the step to the other side.
@@ -91,22 +106,41 @@ void SpotWalk::set_relative_speed(Spot& spot, double time, double relative_speed
   spot.relative_speed = relative_speed;
 }
 
-/// Chooses the direction once more, with the same number, by how much of the spot each would keep below the surface.
-void SpotWalk::steer_by_surface(Spot& spot, const Container& container, const FreeSurface& surface) const {
-  std::vector<Vector3> middles;
-  for (int k = 0; k < directions; ++k) {
-    const Vector3 target = spot.position + step_vector(parameters_, number_of_direction(k));
-    middles.push_back(0.5 * (spot.position + container.keep_spot_inside(spot.position, target)));
-  }
-  spot.direction = number_of_direction(static_cast<int>(surface.choose(middles, spot.direction)));
+/// Of spots there, sideways, for each length that they climb.
+Vector3 SpotWalk::drift(const Vector3& place, const FreeSurface& surface, const FlowField& flow) const {
+  const double depth = surface.height(place) - place.z();
+  const double shear = flow.shear(place) + (depth > 0.0 ? parameters_.wall_shear / depth : 0.0);
+  if (!(shear > 0.0)) return Vector3::Zero();
+  return (parameters_.diffusion_length() - parameters_.spread / shear) * flow.slope(place);
 }
 
-Move SpotWalk::step(Spot& spot, const Container& container, const FreeSurface& surface) const {
+/// Chooses the direction once more, with the same number: by how much of the spot each would keep below the surface,
+/// and so that spots drift on average as the flow wants it.
+void SpotWalk::steer(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const {
+  const bool near_surface = surface.steers() && surface.is_near(spot.position), drifts = parameters_.spread > 0.0;
+  if (!near_surface && !drifts) return;
+  std::array<double, directions> weights = {1.0, 1.0, 1.0, 1.0};
+  if (drifts) {
+    // A step along x is one of two in four: chances (1 +- e) / 4 make a mean of e dx / 2 for each dz.
+    const Vector3 e = 2.0 * parameters_.step_height / parameters_.step_width * drift(spot.position, surface, flow);
+    weights = {1.0 + e.x(), 1.0 - e.x(), 1.0 + e.y(), 1.0 - e.y()};
+    for (double& weight : weights) weight = std::clamp(weight, 0.0, 2.0);
+  }
+  if (near_surface)
+    for (int k = 0; k < directions; ++k) {
+      const Vector3 target = spot.position + step_vector(parameters_, number_of_direction(k));
+      const Vector3 middle = 0.5 * (spot.position + container.keep_spot_inside(spot.position, target));
+      weights[static_cast<std::size_t>(k)] *= surface.weight(middle);
+    }
+  spot.direction = number_of_direction(chosen(weights, spot.direction));
+}
+
+Move SpotWalk::step(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const {
   Move move;
   move.time = spot.next_step;
   move.spot = spot.id;
   const Vector3 start = spot.position;
-  if (surface.steers() && surface.is_near(start)) steer_by_surface(spot, container, surface);
+  steer(spot, container, surface, flow);
   const Vector3 target = start + step_vector(parameters_, spot.direction);
   spot.position = container.keep_spot_inside(start, target);
   // A spot that a wall has reflected goes on away from it, if it goes on its way.

@@ -16,11 +16,11 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       dilates_(parameters.dilation > 0.0),
       dilation_(parameters, container, diameter),
       critical_(parameters, diameter),
-      shears_(parameters.dilatancy > 0.0),
+      shears_(parameters.dilatancy > 0.0 || parameters.spread > 0.0),
       flow_(parameters, container, diameter),
       surface_(parameters, container, diameter),
       surface_interval_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
-      setting_interval_(dilates_ || shears_ || surface_.steers()
+      setting_interval_(dilates_ || shears_ || surface_.needed()
                             ? calibration::climb_between_settings * parameters.radius / parameters.speed
                             : 0.0) {}
 
@@ -63,7 +63,7 @@ void Spots::step_until(double until, const Container& container, Workers& worker
     for (std::size_t k = first; k < last; ++k) {
       Spot& spot = places_[k].spot;
       if (places_[k].removed || !(spot.next_step <= until)) continue;
-      while (spot.next_step <= until) stepped.moves.push_back(walk_.step(spot, container, surface_));
+      while (spot.next_step <= until) stepped.moves.push_back(walk_.step(spot, container, surface_, flow_));
       stepped.ends.push_back({k, stepped.moves.size()});
     }
   };
@@ -131,7 +131,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container, co
   std::pop_heap(events_.begin(), events_.end());
   const std::size_t place = events_.back().place;
   events_.pop_back();
-  const Move move = walk_.step(places_[place].spot, container, surface_);
+  const Move move = walk_.step(places_[place].spot, container, surface_, flow_);
   queue(place);
   return move;
 }
@@ -166,7 +166,7 @@ void Spots::update_flow(double elapsed, Communicator& communicator) {
 
 void Spots::update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator) {
   constexpr double rounded = 1.0 + 1e-12;  // times of calls are sums of shorter intervals
-  if (!surface_.steers() || now * rounded < static_cast<double>(surfaces_) * surface_interval_) return;
+  if (!surface_.needed() || now * rounded < static_cast<double>(surfaces_) * surface_interval_) return;
   surfaces_ = static_cast<std::int64_t>(now * rounded / surface_interval_) + 1;
   surface_.clear();
   visit_grains([this](const Vector3& position) { surface_.add(position); });

@@ -56,6 +56,13 @@ constexpr std::size_t least_places_at_rest = 8;
 /// sqrt(8) / R_s; from R_s / sqrt(8) on, sheared places would have no critical packing fraction at all.
 constexpr double largest_dilatancy = 1.0 / 3.0;
 
+/// Bounds of the spread and of the shear by walls. DEM's flow has 0.6 and 0.7; choices beyond which nothing was tried.
+constexpr double largest_spread = 2.0, largest_wall_shear = 4.0;
+
+/// So far, in spacings of the lattice, walls are looked for from a node on either side: beyond, they shear next to
+/// nothing.
+constexpr double farthest_walls = 64.0;
+
 /// A packing's critical packing fraction is counted as if its walls stood so much farther in, in diameters: at this
 /// distance a bulk value gives the volumes that moves enclose in DEM's flow within 0.12 %, at any distance from the
 /// walls (grains lie in layers there, of which the first is half a diameter from the wall).

@@ -18,11 +18,11 @@ namespace spot {
 /// Grains fall past a place as fast as spots carry free volume up there, so u, the volume that spots have carried for
 /// the volume inside the walls, is proportional to their speed. The shear for each length that they fall is
 ///
-///     s = |grad_h u| / u    (1 / length)
+///     s = |grad_h u| / u + kappa / h    (1 / length)
 ///
-/// with grad_h across the vertical. It says nothing of how fast the flow is: at a given place it stays as it is when
-/// more or fewer spots come. In DEM both the packing fraction and the width of the flow follow it
-/// (docs/notes/2026-11-28-flow-law.md).
+/// with grad_h across the vertical. The second term is what walls shear, at a half_width() of h, which the lattice is
+/// too coarse for. s says nothing of how fast the flow is: at a given place it stays as it is when more or fewer spots
+/// come. In DEM both the packing fraction and the width of the flow follow it (docs/notes/2026-11-28-flow-law.md).
 ///
 /// Steps are counted on the nodes of a NodeLattice, R_s apart, but no closer than grains are; those that were made
 /// longer ago count for less, by a factor of e after calibration::climb_of_flow_memory.
@@ -39,6 +39,9 @@ class FlowField {
 
   /// s at a point (1 / length); 0 where no spot has been. As of the last update.
   double shear(const Vector3& point) const;
+
+  /// grad_h u / u at a point (1 / length); 0 where no spot has been. As of the last update.
+  Vector3 slope(const Vector3& point) const;
 
   /// Works out the volume inside the walls anew, as after these changed.
   void replace_container(const Container& container);
@@ -58,17 +61,26 @@ class FlowField {
 
   void grow_to(const NodeLattice::Box& box);
   void find_volumes();
+  void find_walls();
+  Vector3 place_inside(const NodeLattice::Node& node) const;
   void find_shear();
   double flow(const NodeLattice::Node& node, double otherwise) const;
-  double shear_along(int axis, const NodeLattice::Node& node, double here) const;
+  double relative_slope(int axis, const NodeLattice::Node& node, double here) const;
+  template <typename Value>
+  Value mean_of(const std::vector<Value>& values, const Vector3& point, Value none) const;
 
+  const Container* container_;
   NodeLattice lattice_;
+  bool spreads_;
+  double wall_shear_;
   double memory_time_, step_height_;
   std::vector<Step> added_;
   NodeLattice::Box box_;         // of the nodes where steps have been counted
   std::vector<double> carried_;  // at these nodes: sums of steps, each counted for less the older it is
   std::vector<double> volumes_;  // inside the walls, around the same nodes; 0 where there is next to none
+  std::vector<double> walls_;    // what they shear, at the same nodes; below 0 where that is not known yet
   std::vector<double> shear_;    // at the same nodes
+  std::vector<Vector3> slope_;   // at the same nodes, if there is a spread
 };
 
 }  // namespace spot

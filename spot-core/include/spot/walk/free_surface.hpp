@@ -27,7 +27,10 @@ class FreeSurface {
   /// `diameter`: of grains. The container must outlive the surface, or be replaced.
   FreeSurface(const SpotParameters& parameters, const Container& container, double diameter);
 
+  /// Do spots ask which steps are likely?
   bool steers() const { return beta_ > 0.0; }
+  /// Does anybody ask anything?
+  bool needed() const { return needed_; }
 
   /// Forgets all grains.
   void clear();
@@ -37,9 +40,8 @@ class FreeSurface {
 
   double height(const Vector3& place) const;
 
-  /// 2010's rule for any number of candidates, of which the middles are given, and a uniform number from 0 to 1. They
-  /// are equally likely where all or none of the influence is below the surface.
-  std::size_t choose(const std::vector<Vector3>& middles, double uniform) const;
+  /// p^beta of a step with this middle, from 0 to 1: how likely it is, beside others, by 2010's rule.
+  double weight(const Vector3& middle) const;
 
   /// May a step from here reach above the surface? If not, all steps are alike.
   bool is_near(const Vector3& place) const { return place.z() + margin_ > lowest_; }
@@ -58,6 +60,7 @@ class FreeSurface {
   double height_over(NodeLattice::Node column) const;
   void find_lowest();
 
+  bool needed_;
   const Container* container_;
   const InfluenceProfile* profile_;
   double radius_, beta_, margin_;

@@ -38,9 +38,7 @@ class NodeLattice {
     return (point[i] - origin_[i]) / spacing_[i];
   }
   /// The place of a node.
-  Vector3 point(const Node& node) const {
-    return origin_ + spacing_.cwiseProduct(Vector3(node[0], node[1], node[2]));
-  }
+  Vector3 point(const Node& node) const { return origin_ + spacing_.cwiseProduct(Vector3(node[0], node[1], node[2])); }
   /// Its image in the cell.
   Node wrapped(Node node) const;
 

@@ -39,6 +39,11 @@ struct SpotParameters {
   double exchange_length = 0.0;
   /// a: shear s for each length that grains fall (FlowField) lowers phi_c by a s, of itself (length). At most R_s / 3.
   double dilatancy = 0.0;
+  /// B: where the flow is sheared by s, free volume spreads as if the diffusion length were B / s (FlowField). 0: it is
+  /// b_s everywhere (2006).
+  double spread = 0.0;
+  /// kappa: walls shear what falls between them by kappa / h, h being half_width(). 0: they don't.
+  double wall_shear = 0.0;
   /// beta: near the free surface, how much rather spots go where it is higher (2010's rule, FreeSurface). 0: they do
   /// not care (2006).
   double surface_exponent = 0.0;
@@ -75,6 +80,7 @@ struct SpotParameters {
 
  private:
   void validate_critical_state() const;
+  void validate_spread() const;
   void validate_nonaffine_motion() const;
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "spot/geometry/container.hpp"
+#include "spot/walk/flow_field.hpp"
 #include "spot/walk/free_surface.hpp"
 #include "spot/walk/move.hpp"
 #include "spot/walk/parameters.hpp"
@@ -23,7 +24,16 @@ struct Spot {
 };
 
 /// How spots are born and walk. There is no state but the spot: all draws follow from (seed, spot id, step number). Of
-/// grains, walks know the free surface at most.
+/// grains, walks know the free surface at most; of other spots, how they have made the packing flow.
+///
+/// Free volume spreads sideways as b du/dx, with a b that in DEM's flow falls with the shear s. Spots walk with b_s,
+/// and beside that drift, for each length that they climb, by
+///
+///     (b_s - B / (s + kappa / depth)) grad_h u / u
+///
+/// (FlowField), the depth being that below the free surface. So they spread as b = B / s would have them, without steps
+/// that get longer the less is sheared: what nothing shears comes down as a plug, which walls and the surface limit
+/// (docs/notes/2026-11-29-plug-flow.md).
 ///
 /// A spot is born uniformly on what is R_s inside the rim of an outlet, and R_s below it: it
 /// enters the packing with its whole influence, so that as much leaves through the outlet as the spot
@@ -45,11 +55,12 @@ class SpotWalk {
 
   /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
   /// cell then; the middle of the step need not be.
-  Move step(Spot& spot, const Container& container, const FreeSurface& surface) const;
+  Move step(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const;
 
  private:
   void draw_next_step(Spot& spot) const;
-  void steer_by_surface(Spot& spot, const Container& container, const FreeSurface& surface) const;
+  Vector3 drift(const Vector3& place, const FreeSurface& surface, const FlowField& flow) const;
+  void steer(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const;
 
   SpotParameters parameters_;
 };

@@ -62,7 +62,7 @@ class Spots {
   // The same in two parts, of which several threads may do the first, for different spots.
   Carried exchange(const Move& move, int enclosed, const Container& container);
   void add_to_flow(const Move& move, double carried) {
-    if (shears_ && critical_.on()) flow_.add(move, carried);
+    if (shears_) flow_.add(move, carried);
   }
 
   /// Collective. `elapsed` after the last time, spots learn how the flow is sheared now.
