@@ -18,6 +18,19 @@
 
 namespace scenes {
 
+/// Is this so of a place, or of its image beyond either end of a period?
+template <typename Is>
+bool near_any_image(const spot::Vector3& place, const spot::Periodic& periodic, const Is& is) {
+  const auto shifts = [&](int axis) {
+    const double length = periodic.along(axis) ? periodic.high(axis) - periodic.low(axis) : 0.0;
+    return length > 0.0 ? std::vector<double>{-length, 0.0, length} : std::vector<double>{0.0};
+  };
+  for (const double x : shifts(0))
+    for (const double y : shifts(1))
+      if (is(spot::Vector3(place + spot::Vector3(x, y, 0.0)))) return true;
+  return false;
+}
+
 /// Random sequential addition of up to n grains between walls, radii drawn uniformly from d/4 to d/2 (or all d/2), the
 /// largest first; no two overlap, nor any a wall or, along the axes on which space repeats, an image. Ids are shuffled.
 inline std::vector<spot::Grain> unequal_grains(std::size_t n, const spot::Vector3& low, const spot::Vector3& high,
@@ -28,17 +41,19 @@ inline std::vector<spot::Grain> unequal_grains(std::size_t n, const spot::Vector
   for (std::size_t k = 0; k < n; ++k) radii.push_back(equal ? 0.5 * diameter : diameter * draws.uniform(0.25, 0.5));
   std::sort(radii.rbegin(), radii.rend());
   std::vector<spot::Grain> grains;
+  GrainsByCube placed(diameter);
   for (const double radius : radii)
     for (int attempt = 0; attempt < 200; ++attempt) {
       spot::Vector3 margin = spot::Vector3::Constant(radius);
       for (int axis = 0; axis < 2; ++axis)
         if (periodic.along(axis)) margin[axis] = 0.0;
       const spot::Vector3 centre = draws.in_box(low + margin, high - margin);
-      const bool free = std::none_of(grains.begin(), grains.end(), [&](const spot::Grain& other) {
+      const auto overlaps = [&](const spot::Grain& other) {
         return periodic.nearest(spot::Vector3(other.position - centre)).norm() < radius + other.radius;
-      });
-      if (!free) continue;
+      };
+      if (near_any_image(centre, periodic, [&](const auto& image) { return placed.any_near(image, overlaps); })) continue;
       grains.push_back({0, centre, false, radius});
+      placed.add(grains.back());
       break;
     }
   std::vector<std::int64_t> ids;

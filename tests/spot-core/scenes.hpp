@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
@@ -42,18 +44,55 @@ class Draws {
   std::mt19937_64 engine_;
 };
 
+/// Grains by the cube that they are in, so that only those near a place are asked.
+class GrainsByCube {
+ public:
+  /// Nobody farther than `reach` is of interest.
+  explicit GrainsByCube(double reach) : reach_(reach) {}
+
+  void add(const spot::Grain& grain) { cubes_[cube(grain.position)].push_back(grain); }
+
+  /// Is this so of any grain in the cubes around?
+  template <typename Is>
+  bool any_near(const spot::Vector3& place, const Is& is) const {
+    const Cube middle = cube(place);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) {
+          const auto there = cubes_.find({middle[0] + dx, middle[1] + dy, middle[2] + dz});
+          if (there != cubes_.end() && std::any_of(there->second.begin(), there->second.end(), is)) return true;
+        }
+    return false;
+  }
+
+ private:
+  using Cube = std::array<std::int64_t, 3>;
+  Cube cube(const spot::Vector3& place) const {
+    Cube cube;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      cube[axis] = static_cast<std::int64_t>(std::floor(place[static_cast<int>(axis)] / reach_));
+    return cube;
+  }
+
+  double reach_;
+  std::map<Cube, std::vector<spot::Grain>> cubes_;
+};
+
 /// Random sequential addition: up to n grains, no two centres closer than `least_distance`. Ids are shuffled, so
 /// that they say nothing about the order of the grains.
 inline std::vector<spot::Grain> random_grains(std::size_t n, const spot::Vector3& low, const spot::Vector3& high,
                                               double least_distance, std::uint64_t seed) {
   Draws draws(seed);
   std::vector<spot::Grain> grains;
+  GrainsByCube placed(least_distance);
   for (std::size_t attempt = 0; attempt < 200 * n && grains.size() < n; ++attempt) {
     const spot::Vector3 centre = draws.in_box(low, high);
-    const bool free = std::none_of(grains.begin(), grains.end(), [&](const spot::Grain& other) {
+    const auto too_close = [&](const spot::Grain& other) {
       return (other.position - centre).squaredNorm() < least_distance * least_distance;
-    });
-    if (free) grains.push_back({0, centre});
+    };
+    if (placed.any_near(centre, too_close)) continue;
+    grains.push_back({0, centre});
+    placed.add(grains.back());
   }
   std::vector<std::int64_t> ids(grains.size());
   for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::int64_t>(10 + 3 * i);
