@@ -422,16 +422,17 @@ void FixSpot::check_box() {
     require_walls_or_period(*box);
     if (box->x) require('x', box->x->low, box->x->high);
     if (box->y) require('y', box->y->low, box->y->high);
-  } else if (command.periodic.any()) {
+  } else if (command.periodic.any() && command.uses_region()) {
     throw spot::InvalidContainer(
-        "in a periodic simulation box the walls are those of 'box xlo xhi ylo yhi', with NULL "
-        "NULL along periodic axes");
+        "walls of a region cannot repeat, but the simulation box is periodic: use 'box' with NULL NULL along periodic "
+        "axes, 'walls' or 'cylinder'");
   } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
     require('x', cylinder->x - cylinder->radius, cylinder->x + cylinder->radius);
     require('y', cylinder->y - cylinder->radius, cylinder->y + cylinder->radius);
   } else if (const auto *shaped = std::get_if<ShapedWalls>(&command.walls)) {
-    require('x', shaped->low().x(), shaped->high().x());
-    require('y', shaped->low().y(), shaped->high().y());
+    // Along periodic axes each shape is asked whether it can repeat.
+    if (!command.periodic.along(0)) require('x', shaped->low().x(), shaped->high().x());
+    if (!command.periodic.along(1)) require('y', shaped->low().y(), shaped->high().y());
   }
   if (*command.outlet < domain->boxlo[2])
     throw spot::InvalidContainer(message("outlet is at z = ", *command.outlet, " but the simulation box begins at ",
@@ -446,9 +447,11 @@ void FixSpot::make_container() {
   if (const auto *box = std::get_if<BoxWalls>(&command.walls)) {
     model->container = spot::box_silo(box->x, box->y, command.periodic, outlets, buffers);
   } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
-    model->container = spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, outlets, buffers);
+    model->container =
+        spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, outlets, buffers, command.periodic);
   } else if (const auto *shaped = std::get_if<ShapedWalls>(&command.walls)) {
-    model->container = std::make_shared<spot::ShapedContainer>(shaped->solid(), outlets, buffers);
+    model->container = std::make_shared<spot::ShapedContainer>(
+        shaped->solid(command.periodic), outlets.repeated(command.periodic), buffers, command.periodic);
   } else {
     const std::string &name = std::get<RegionWalls>(command.walls).id;
     Region *region = find_region(*domain, name, 0);
