@@ -29,6 +29,16 @@ struct RegionWalls {
   std::string id;
 };
 
+/// `recirculate yes`, `recirculate z` and `recirculate region ID`: drained grains come in again right above the bed, at
+/// a height, or in a region.
+struct RecirculationCommand {
+  std::optional<double> height;
+  std::string region;
+
+  /// As it is written.
+  std::string text() const;
+};
+
 /// `accuracy`: what everything that the command leaves open is chosen for.
 enum class Accuracy {
   fast,    ///< overlaps up to several times those of DEM
@@ -52,6 +62,7 @@ struct SpotCommand {
   std::optional<double> outlet;  // height below which grains are removed
   std::optional<double> side_buffer, base_buffer;
   std::optional<double> window;
+  std::optional<RecirculationCommand> recirculation;                     // none: grains that have drained are gone
   double largest_overlap = spot::calibration::largest_overlap_at_start;  // in diameters
   int average = 100;                                                     // steps over which the outflow is averaged
   bool per_atom = false;                                                 // output of what has become of each grain
