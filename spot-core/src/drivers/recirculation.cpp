@@ -71,6 +71,22 @@ class Room {
   double height_ = -infinite;
 };
 
+/// Counts the grains of all ranks. Returns the height of each room, and last that of the bed.
+std::vector<double> free_heights(const Drainage& drainage, std::vector<Room>& rooms, double diameter,
+                                 Communicator& communicator) {
+  double highest = -infinite;
+  drainage.visit_grains([&](const Grain& grain) {
+    for (Room& room : rooms) room.add(grain.position, radius_in(diameter, grain));
+    highest = std::max(highest, grain.position.z() + diameter);
+  });
+  std::vector<double> heights;
+  for (const Room& room : rooms) heights.push_back(-room.height());
+  heights.push_back(-highest);
+  heights = communicator.least(heights);
+  for (double& height : heights) height = -height;
+  return heights;
+}
+
 }  // namespace
 
 Recirculation::Recirculation(std::uint64_t seed, Inlet inlet, std::shared_ptr<const Container> container,
@@ -108,24 +124,16 @@ std::vector<Grain> Recirculation::place_all(const Drainage& drainage, std::vecto
       grain.position = draw(grain.id, time, attempt);
       rooms.emplace_back(grain, diameter_, periodic, inlet_.on_surface);
     }
-    double highest = -infinite;
-    drainage.visit_grains([&](const Grain& other) {
-      const double radius = radius_in(diameter_, other);
-      for (Room& room : rooms) room.add(other.position, radius);
-      highest = std::max(highest, other.position.z() + diameter_);
-    });
-    std::vector<double> heights = {-highest};
-    for (const Room& room : rooms) heights.push_back(-room.height());
-    heights = communicator.least(heights);
+    const std::vector<double> heights = free_heights(drainage, rooms, diameter_, communicator);
     std::vector<Grain> left;
     for (std::size_t k = 0; k < waiting.size(); ++k) {
       Grain grain = waiting[k];
       const double radius = radius_in(diameter_, grain);
       for (const Grain& other : placed) rooms[k].add(other.position, radius_in(diameter_, other));
-      const double height = std::max(-heights[k + 1], rooms[k].height());
+      const double height = std::max(heights[k], rooms[k].height());
       if (inlet_.on_surface) {
         // Where the bed has a hole down to the walls, from as high as it is elsewhere.
-        const double top = std::max(-heights[0], container_->outlets().height() + diameter_);
+        const double top = std::max(heights.back(), container_->outlets().height() + diameter_);
         grain.position.z() = height > -infinite ? height : top;
       }
       for (double& at : grain.position) at = drainage.quantum().snap(at);
