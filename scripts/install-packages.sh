@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Installs the Debian packages this project needs: those that are missing, and nothing when all are there.
+#
+#   scripts/install-packages.sh             what run.sh and test.sh need
+#   scripts/install-packages.sh NAME ...    these packages instead
 set -euo pipefail
 
 packages=(
@@ -11,6 +14,7 @@ packages=(
   python3 python3-numpy python3-scipy python3-matplotlib python3-pil python3-zstandard python3-pytest
   python3-venv python3-setuptools python3-wheel
 )
+[ $# -eq 0 ] || packages=("$@")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -3,14 +3,13 @@
 //
 //   stress-parameters                         print the table
 //   stress-parameters --short                 fewer values, a quarter of the time
-//   stress-parameters --write tests/README.md put it between the marks there
+//   stress-parameters --write FILE.csv        write it to a file, too: tests/stress/parameters.csv
 //
 // Ends with an error if one is neither a valid packing nor a typed error.
 #include <array>
 #include <cmath>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -260,24 +259,9 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-/// Puts the table into a file, between the marks that are there.
-void write_between_marks(const std::string& path, const std::string& table) {
-  const std::string begin = "<!-- stress-parameters -->\n", end = "<!-- end -->\n";
-  std::ifstream in(path);
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  const std::size_t first = text.find(begin), last = text.find(end, first);
-  if (!in || last == std::string::npos) throw spot::Error(path + " has no lines " + begin + " and " + end);
-  text.replace(first + begin.size(), last - first - begin.size(), table);
-  in.close();
-  std::ofstream out(path);
-  if (!(out << text)) throw spot::Error("cannot write " + path);
-}
-
 /// The table, and how many were neither valid nor an error.
 std::pair<std::string, int> drain_all(bool is_short) {
-  std::string table =
-      "| tried | value | driver | grains | moves | drained | largest overlap (d) | largest B | outcome |\n"
-      "|---|---|---|---|---|---|---|---|---|\n";
+  std::string table = "tried,value,driver,grains,moves,drained,largest overlap (d),largest B,outcome\n";
   std::map<std::string, std::array<int, 3>> odd;  // outcomes
   int number = 0, neither = 0;
   for (Case& c : all_cases()) {
@@ -293,11 +277,11 @@ std::pair<std::string, int> drain_all(bool is_short) {
       table += row;
   }
   for (const auto& [what, counts] : odd)
-    table += spot::message("| ", what,
-                           what == "all at once" ? " | drawn from the ranges above | both"
-                                                 : " | 5e-324, 1e-310, 1e308, inf, -inf, nan, -1, -0 | windowed",
-                           " | | | | | | ", counts[stress::Outcome::valid], " valid, ", counts[stress::Outcome::error],
-                           " errors |\n");
+    table += spot::message(stress::quoted(what),
+                           what == "all at once" ? ",drawn from the ranges above,both"
+                                                 : ",\"5e-324, 1e-310, 1e308, inf, -inf, nan, -1, -0\",windowed",
+                           ",,,,,,\"", counts[stress::Outcome::valid], " valid, ", counts[stress::Outcome::error],
+                           " errors\"\n");
   return {table, neither};
 }
 
@@ -307,7 +291,8 @@ int main(int argc, char** argv) {
   try {
     const std::string option = argc > 1 ? argv[1] : "";
     const auto [table, neither] = drain_all(option == "--short");
-    if (option == "--write") write_between_marks(argc > 2 ? argv[2] : "", table);
+    const std::string path = option == "--write" && argc > 2 ? argv[2] : "";
+    if (option == "--write" && !(std::ofstream(path) << table)) throw spot::Error("cannot write '" + path + "'");
     std::cout << neither << " neither valid nor an error\n";
     return neither == 0 ? 0 : 1;
   } catch (const spot::Error& error) {

@@ -113,14 +113,20 @@ Outcome drain(const Scene& scene) {
   return outcome;
 }
 
+std::string quoted(const std::string& text) {
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string(2, c) : std::string(1, c);
+  return field + '"';
+}
+
 std::string row(const std::string& what, const std::string& value, const Scene& scene, const Outcome& outcome) {
   char numbers[200];
-  std::snprintf(numbers, sizeof numbers, "%zu | %lld | %lld | %.3f | %.1e", scene.grains.size(),
+  std::snprintf(numbers, sizeof numbers, "%zu,%lld,%lld,%.3f,%.1e", scene.grains.size(),
                 static_cast<long long>(outcome.counters.moves), static_cast<long long>(outcome.counters.drained),
                 outcome.largest.largest, outcome.largest.badness);
   const char* const kinds[] = {"valid", "error: ", "NEITHER: "};
-  return "| " + what + " | " + value + " | " + (scene.time_ordered ? "2006" : "windowed") + " | " + numbers + " | " +
-         kinds[outcome.kind] + outcome.text + " |\n";
+  return quoted(what) + ',' + quoted(value) + (scene.time_ordered ? ",2006," : ",windowed,") + numbers + ',' +
+         quoted(kinds[outcome.kind] + outcome.text) + '\n';
 }
 
 }  // namespace stress

@@ -69,7 +69,10 @@ constexpr double overlap_bound = 0.3;
 /// Drains the scene, checks it 20 times and judges it.
 Outcome drain(const Scene& scene);
 
-/// A line of the table: what was tried, and what became of it.
+/// A field of a CSV file.
+std::string quoted(const std::string& text);
+
+/// A line of the table, as CSV: what was tried, and what became of it.
 std::string row(const std::string& what, const std::string& value, const Scene& scene, const Outcome& outcome);
 
 }  // namespace stress
