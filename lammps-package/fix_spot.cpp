@@ -21,6 +21,7 @@
 #include "grain_delivery.h"
 #include "grain_sizes.h"
 #include "mpi_communicator.h"
+#include "recirculation.h"
 #include "region_container.h"
 #include "saved_run.h"
 #include "spot/base/errors.hpp"
@@ -52,7 +53,7 @@ constexpr int FIRST_OF_OUTLETS = 8;
 enum SpotColumn { ID, X, Y, Z, STEPS, VOLUME, COLUMNS };
 
 /// Columns of the output per atom, after the displacement along x, y and z.
-enum GrainColumn { MOVES = 3, GRAIN_COLUMNS };
+enum GrainColumn { MOVES = 3, PASSAGES, GRAIN_COLUMNS };
 
 /// What a grain has in a restart file: the number of these, its columns, and a checksum.
 constexpr int GRAIN_RECORD = 1 + GRAIN_COLUMNS + 1;
@@ -169,7 +170,9 @@ struct FixSpot::Model {
   std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
   bool named_unused_forces = false, told_outflow = false;
   LocalIndices local;
-  std::vector<tagint> leaving;             // drained grains that LAMMPS still holds, on whichever rank
+  std::unique_ptr<spot::Recirculation> recirculation;  // if grains go round
+  std::vector<Delivery> put_back;  // in the last step, on all ranks, in increasing order of IDs; where they are now
+  std::vector<tagint> leaving;     // drained grains that LAMMPS still holds, on whichever rank
   std::deque<Drained> drained = {{0, 0}};  // after each of the last command.average steps, and before
   std::vector<double> spots;               // SpotColumn values, a row a spot
   std::vector<double *> rows;
@@ -378,6 +381,9 @@ void FixSpot::init() {
     choose_window();
     check_box();
     make_container();
+    if (model->command.recirculation)
+      model->recirculation = std::make_unique<spot::Recirculation>(
+          model->command.spots.seed, inlet_of(model->command, *domain), model->container, model->sizes.largest);
     if (model->saved) require_same_settings(*model->saved, model->command.settings());
     if (input->variable->find(DRY_RUN) >= 0) dry_run();
   } catch (const spot::Error &e) {
@@ -461,16 +467,17 @@ void FixSpot::check_box() {
     require_walls_or_period(*box);
     if (box->x) require('x', box->x->low, box->x->high);
     if (box->y) require('y', box->y->low, box->y->high);
-  } else if (command.periodic.any()) {
+  } else if (command.periodic.any() && command.uses_region()) {
     throw spot::InvalidContainer(
-        "in a periodic simulation box the walls are those of 'box xlo xhi ylo yhi', with NULL "
-        "NULL along periodic axes");
+        "walls of a region cannot repeat, but the simulation box is periodic: use 'box' with NULL NULL along periodic "
+        "axes, 'walls' or 'cylinder'");
   } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
     require('x', cylinder->x - cylinder->radius, cylinder->x + cylinder->radius);
     require('y', cylinder->y - cylinder->radius, cylinder->y + cylinder->radius);
   } else if (const auto *shaped = std::get_if<ShapedWalls>(&command.walls)) {
-    require('x', shaped->low().x(), shaped->high().x());
-    require('y', shaped->low().y(), shaped->high().y());
+    // Along periodic axes each shape is asked whether it can repeat.
+    if (!command.periodic.along(0)) require('x', shaped->low().x(), shaped->high().x());
+    if (!command.periodic.along(1)) require('y', shaped->low().y(), shaped->high().y());
   }
   if (*command.outlet < domain->boxlo[2])
     throw spot::InvalidContainer(message("outlet is at z = ", *command.outlet, " but the simulation box begins at ",
@@ -485,9 +492,11 @@ void FixSpot::make_container() {
   if (const auto *box = std::get_if<BoxWalls>(&command.walls)) {
     model->container = spot::box_silo(box->x, box->y, command.periodic, outlets, buffers);
   } else if (const auto *cylinder = std::get_if<CylinderWalls>(&command.walls)) {
-    model->container = spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, outlets, buffers);
+    model->container =
+        spot::cylinder_silo(cylinder->x, cylinder->y, cylinder->radius, outlets, buffers, command.periodic);
   } else if (const auto *shaped = std::get_if<ShapedWalls>(&command.walls)) {
-    model->container = std::make_shared<spot::ShapedContainer>(shaped->solid(), outlets, buffers);
+    model->container = std::make_shared<spot::ShapedContainer>(
+        shaped->solid(command.periodic), outlets.repeated(command.periodic), buffers, command.periodic);
   } else {
     const std::string &name = std::get<RegionWalls>(command.walls).id;
     Region *region = find_region(*domain, name, 0);
@@ -650,6 +659,14 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
   const auto put = [&](std::int64_t grain, const double *position) {
     const int i = model->local[static_cast<tagint>(grain)];
     if (i < 0) throw spot::InvalidPacking(lost(grain));  // LAMMPS' errors are for its own thread
+    if (was_put_back(grain)) {
+      // Whatever it was, it is no motion.
+      for (int axis = 0; axis < 3; ++axis) {
+        atom->x[i][axis] = in_box(position[axis], axis);
+        atom->v[i][axis] = 0.0;
+      }
+      return;
+    }
     for (int axis = 0; axis < 3; ++axis) {
       const double before = quantum.snap(atom->x[i][axis]);
       const double by = model->cell.nearest(position[axis] - before, axis);
@@ -695,7 +712,12 @@ void FixSpot::initial_integrate(int) {
     drainage.require_inside();
     const std::vector<spot::Grain> drained = drainage.take_drained();
     count_at_outlets(drained);
-    write_grains(drained, true);
+    if (model->recirculation) {
+      put_back(drained);
+      write_grains({}, true);
+    } else {
+      write_grains(drained, true);
+    }
     if (peratom_flag) add_moves_received();
     remember_grains();
   } catch (const spot::Error &e) {
@@ -703,11 +725,46 @@ void FixSpot::initial_integrate(int) {
   }
   for (const tagint grain : model->leaving) model->drained_mass += atom->rmass[local_index(grain)];
   tell_all_who_leaves();
-  if (!model->leaving.empty()) next_reneighbor = update->ntimestep;
+  const std::size_t left = model->leaving.size() + model->put_back.size();
+  if (left > 0) next_reneighbor = update->ntimestep;
 
   auto &drained = model->drained;
-  drained.push_back({model->windows, drained.back().grains + static_cast<std::int64_t>(model->leaving.size())});
+  drained.push_back({model->windows, drained.back().grains + static_cast<std::int64_t>(left)});
   if (drained.size() > static_cast<std::size_t>(model->command.average) + 1) drained.pop_front();
+}
+
+/// Grains that have drained come in again and stay those of LAMMPS. All ranks get to know them and where they are now.
+void FixSpot::put_back(const std::vector<spot::Grain> &drained) {
+  model->put_back.clear();
+  model->recirculation->put_back(*model->drainage, drained, model->windows, *model->ranks);
+  for (const spot::Grain &grain : drained) model->leaving.push_back(static_cast<tagint>(grain.id));
+  tell_all_who_leaves();
+  if (model->leaving.empty()) return;
+  std::sort(model->leaving.begin(), model->leaving.end());
+  std::vector<Delivery> own;
+  model->drainage->visit_grains([&](const spot::Grain &grain) {
+    const spot::Vector3 &at = grain.position;
+    if (std::binary_search(model->leaving.begin(), model->leaving.end(), static_cast<tagint>(grain.id)))
+      own.push_back({grain.id, {in_box(at.x(), 0), in_box(at.y(), 1), at.z()}, false});
+  });
+  model->leaving.clear();
+  spot::Bytes bytes;
+  spot::append(bytes, own);
+  for (const spot::Bytes &of_one : model->ranks->share_with_all(bytes))
+    for (const Delivery &grain : spot::ByteReader(of_one).take_all<Delivery>()) model->put_back.push_back(grain);
+  std::sort(model->put_back.begin(), model->put_back.end(),
+            [](const Delivery &a, const Delivery &b) { return a.id < b.id; });
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!was_put_back(atom->tag[i])) continue;
+    model->drained_mass += atom->rmass[i];
+    if (peratom_flag) array_atom[i][PASSAGES] += 1.0;
+  }
+}
+
+bool FixSpot::was_put_back(std::int64_t grain) const {
+  const auto found = std::lower_bound(model->put_back.begin(), model->put_back.end(), grain,
+                                      [](const Delivery &a, std::int64_t wanted) { return a.id < wanted; });
+  return found != model->put_back.end() && found->id == grain;
 }
 
 /// Each through the outlet that was nearest when it left.
@@ -728,8 +785,10 @@ void FixSpot::tell_all_who_leaves() {
 }
 
 /// LAMMPS drops atoms that are outside a fixed boundary when it hands atoms to their ranks, right after this. Another
-/// fix may have taken some of them already.
+/// fix may have taken some of them already. Grains that came in again may be far from home.
 void FixSpot::pre_exchange() {
+  if (comm->nprocs > 1 && !model->put_back.empty()) bring_home(model->put_back, *atom, *comm, *domain, *model->ranks);
+  model->put_back.clear();
   if (model->leaving.empty()) return;
   model->local.assign(atom->tag, atom->nlocal);
   std::int64_t found = 0;
@@ -947,7 +1006,7 @@ int FixSpot::maxsize_restart() { return GRAIN_RECORD; }
 
 double FixSpot::memory_usage() {
   const Model &m = *model;
-  std::size_t bytes = m.local.memory() + spot::bytes_in(m.leaving, m.spots, m.rows);
+  std::size_t bytes = m.local.memory() + spot::bytes_in(m.leaving, m.put_back, m.spots, m.rows);
   bytes += m.drained.size() * sizeof m.drained[0];
   if (m.drainage) bytes += m.drainage->memory();
   if (peratom_flag) bytes += atom->nmax * (GRAIN_COLUMNS * sizeof(double) + sizeof(double *));

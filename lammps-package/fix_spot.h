@@ -84,6 +84,8 @@ class FixSpot : public Fix {
   void write_grains(const std::vector<spot::Grain> &, bool);
   void offer_output_per_atom();
   void add_moves_received();
+  void put_back(const std::vector<spot::Grain> &);
+  bool was_put_back(std::int64_t) const;
   void count_at_outlets(const std::vector<spot::Grain> &);
   void tell_all_who_leaves();
   int local_index(std::int64_t) const;

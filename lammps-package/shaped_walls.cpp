@@ -3,7 +3,9 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 
+#include "spot/geometry/repeated_solid.hpp"
 #include "spot/geometry/shapes.hpp"
 #include "words.h"
 
@@ -109,13 +111,29 @@ void ShapedWalls::read(Words& words) {
                                              {"cylinder", read_cylinder},
                                              {"plane", read_plane},
                                              {"sphere", read_sphere}})(words);
-  if (!add && !solid_) throw InvalidParameter("'walls cut' has nothing to cut from: 'walls add' comes first");
-  text_ += (text_.empty() ? "" : " ") + words.text_since(first);
-  if (!add) {
-    solid_ = *solid_ & ~shape.solid;
-    return;
+  if (!add && shapes_.empty()) throw InvalidParameter("'walls cut' has nothing to cut from: 'walls add' comes first");
+  if (add) {
+    low_ = shapes_.empty() ? shape.low : low_.cwiseMin(shape.low);
+    high_ = shapes_.empty() ? shape.high : high_.cwiseMax(shape.high);
   }
-  low_ = solid_ ? low_.cwiseMin(shape.low) : shape.low;
-  high_ = solid_ ? high_.cwiseMax(shape.high) : shape.high;
-  solid_ = solid_ ? *solid_ | shape.solid : shape.solid;
+  shapes_.push_back({add, shape.solid, shape.low, shape.high, words.text_since(first)});
+}
+
+Solid ShapedWalls::solid(const spot::Periodic& periodic) const {
+  std::optional<Solid> all;
+  for (const Shape& shape : shapes_) {
+    try {
+      const Solid solid = spot::repeated(shape.solid, shape.low, shape.high, periodic);
+      all = !all ? solid : shape.add ? *all | solid : *all & ~solid;
+    } catch (const spot::InvalidContainer& e) {
+      throw spot::InvalidContainer(message("'walls ", shape.text, "': ", e.what()));
+    }
+  }
+  return *all;
+}
+
+std::string ShapedWalls::text() const {
+  std::string text;
+  for (const Shape& shape : shapes_) text += (text.empty() ? "" : " ") + shape.text;
+  return text;
 }

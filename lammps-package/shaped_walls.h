@@ -2,9 +2,10 @@
 #ifndef SPOT_SHAPED_WALLS_H
 #define SPOT_SHAPED_WALLS_H
 
-#include <optional>
 #include <string>
+#include <vector>
 
+#include "spot/geometry/periodic.hpp"
 #include "spot/geometry/solid.hpp"
 
 class Words;
@@ -17,19 +18,25 @@ class ShapedWalls {
   /// allowed, and spot::InvalidContainer for numbers that make no shape.
   void read(Words& words);
 
-  const spot::Solid& solid() const { return *solid_; }
+  /// Throws spot::InvalidContainer, naming a shape that cannot repeat where space does; see spot::repeated().
+  spot::Solid solid(const spot::Periodic& periodic) const;
 
   /// No place inside is beyond these (length).
   const spot::Vector3& low() const { return low_; }
   const spot::Vector3& high() const { return high_; }
 
   /// As they were read.
-  const std::string& text() const { return text_; }
+  std::string text() const;
 
  private:
-  std::optional<spot::Solid> solid_;
+  struct Shape {
+    bool add;  // or cut
+    spot::Solid solid;
+    spot::Vector3 low, high;  // no place of it is beyond these
+    std::string text;
+  };
+  std::vector<Shape> shapes_;
   spot::Vector3 low_ = spot::Vector3::Zero(), high_ = spot::Vector3::Zero();
-  std::string text_;
 };
 
 #endif

@@ -66,6 +66,23 @@ void read_relax(SpotCommand& command, Words& words) {
   }
 }
 
+void read_recirculation(SpotCommand& command, Words& words) {
+  RecirculationCommand recirculation;
+  if (words.next_is_number()) {
+    recirculation.height = words.number("z");
+  } else {
+    const std::string how = words.value("'yes', 'no', a height or 'region'");
+    if (how == "region")
+      recirculation.region = words.value("region-ID");
+    else if (how != "yes" && how != "no")
+      throw InvalidParameter(message("'recirculate ", how,
+                                     "' is not known; allowed are 'recirculate yes', 'recirculate no', a height, and "
+                                     "'recirculate region' with the ID of one"));
+    if (how == "no") return command.recirculation.reset();
+  }
+  command.recirculation = recirculation;
+}
+
 using Reader = std::function<void(SpotCommand&, Words&)>;
 
 const std::map<std::string, Reader>& readers() {
@@ -159,6 +176,7 @@ const std::map<std::string, Reader>& readers() {
          c.spots.nonaffine = w.not_negative("non-affine motion");
          c.spots.nonaffine_length = w.positive("the length of non-affine motion");
        }},
+      {"recirculate", read_recirculation},
       {"threads", [](SpotCommand& c, Words& w) { c.threads = to_int(w.integer("the number of threads", 1)); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,
@@ -207,6 +225,10 @@ std::size_t modify_spot_command(SpotCommand& command, const std::vector<std::str
     throw InvalidParameter(message("unknown keyword '", keyword, "'; only 'threads' can be changed"));
   readers().at(keyword)(command, words);
   return words.taken();
+}
+
+std::string RecirculationCommand::text() const {
+  return height ? precise(*height) : region.empty() ? "yes" : "region " + region;
 }
 
 void SpotCommand::resolve(double diameter, double mean_volume) {
@@ -285,5 +307,6 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"momentum", precise(relaxation.momentum)},
           {"contact", precise(relaxation.contact_overlap)},
           {"closing", precise(relaxation.closing_gap, ' ', relaxation.closing_share)},
-          {"shell", precise(relaxation.shell)}};
+          {"shell", precise(relaxation.shell)},
+          {"recirculate", recirculation ? recirculation->text() : "no"}};
 }

@@ -30,6 +30,16 @@ struct RegionWalls {
   std::string id;
 };
 
+/// `recirculate yes`, `recirculate z` and `recirculate region ID`: drained grains come in again right above the bed, at
+/// a height, or in a region.
+struct RecirculationCommand {
+  std::optional<double> height;
+  std::string region;
+
+  /// As it is written.
+  std::string text() const;
+};
+
 /// What a `fix ID group spot ...` command says, in the units of the deck. Where a length or a time was not
 /// given, it is empty and follows from the grain diameter or the timestep, see resolve().
 struct SpotCommand {
@@ -46,6 +56,7 @@ struct SpotCommand {
   std::optional<double> outlet;  // height below which grains are removed
   std::optional<double> side_buffer, base_buffer;
   std::optional<double> window;
+  std::optional<RecirculationCommand> recirculation;                     // none: grains that have drained are gone
   double largest_overlap = spot::calibration::largest_overlap_at_start;  // in diameters
   int average = 100;                                                     // steps over which the outflow is averaged
   bool per_atom = false;                                                 // output of what has become of each grain

@@ -124,7 +124,7 @@ TEST(OutletCommand, MistakesAreNamed) {
 }
 
 spot::Solid solid_of(const std::string& walls) {
-  return std::get<ShapedWalls>(command_of(walls, "orifice 0 0 0 4 injection 300").walls).solid();
+  return std::get<ShapedWalls>(command_of(walls, "orifice 0 0 0 4 injection 300").walls).solid({});
 }
 
 TEST(ShapedWalls, ShapesAreAddedAndCutInTheirOrder) {

@@ -308,6 +308,25 @@ TEST(SpotCommand, SettingsTellWhatSpotsLeave) {
   EXPECT_EQ(found["dilatancy"], "0");
 }
 
+TEST(SpotCommand, DrainedGrainsGoRoundOnlyIfAskedTo) {
+  const auto setting = [](const std::string& more) {
+    std::string text;
+    for (const auto& [name, value] : resolved(more).settings())
+      if (name == "recirculate") text = value;
+    return text;
+  };
+  EXPECT_EQ(setting(""), "no");
+  EXPECT_EQ(setting("recirculate 15 recirculate no"), "no");
+  EXPECT_EQ(setting("recirculate yes"), "yes");
+  EXPECT_EQ(setting("recirculate -2.5"), "-2.5");
+  EXPECT_EQ(setting("recirculate region top"), "region top");
+  EXPECT_EQ(parse(complete + "recirculate 15").recirculation->height, 15.0);
+  EXPECT_THAT(error_of(complete + "recirculate maybe"),
+              AllOf(HasSubstr("'recirculate maybe' is not known"), HasSubstr("'recirculate region'")));
+  EXPECT_THAT(error_of(complete + "recirculate"), HasSubstr("ends before its value"));
+  EXPECT_THAT(error_of(complete + "recirculate inf"), HasSubstr("'inf' is not a finite number"));
+}
+
 TEST(SpotCommand, GapsAreClosedOnlyIfAskedFor) {
   for (const std::string more : {"", "accuracy fast", "accuracy exact", "relax every 1"}) {
     EXPECT_EQ(resolved(more).relaxation.closing_gap, 0.0) << more;
@@ -368,7 +387,8 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "spread",    "beverloo",    "schedule",
                                                "walls",     "add",         "cut",
                                                "block",     "cone",        "z",
-                                               "plane"};
+                                               "plane",     "sphere",      "NULL",
+                                               "recirculate"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -491,7 +511,8 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"shell", in(c.relaxation.shell, "")},
       {"overlap", in(c.largest_overlap, "")},
       {"average", std::to_string(c.average)},
-      {"peratom", c.per_atom ? "yes" : "no"}};
+      {"peratom", c.per_atom ? "yes" : "no"},
+      {"recirculate", c.recirculation ? "yes" : "no"}};
   std::map<std::string, std::string> documented;
   const std::string text = section("Default", ".. _Rycroft2006:");
   for (const auto& match : matches(text, "\n\\* (\\w+) = ([^\n]*)")) documented[match[1]] = match[2];

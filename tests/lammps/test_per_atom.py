@@ -115,8 +115,8 @@ def test_damaged_restart(tmp_path):
     data = (tmp_path / "half.restart").read_bytes()
     fallen = frames[-1]["f_drain[3]"].min()
     at = data.index(struct.pack("<d", fallen))
-    assert struct.unpack_from("<d", data, at - 24)[0] == 6.0 and fallen < -0.1
-    for place in (at, at + 7, at - 24 + 6, at - 24 + 7, at + 16):
+    assert struct.unpack_from("<d", data, at - 24)[0] == 7.0 and fallen < -0.1
+    for place in (at, at + 7, at - 24 + 6, at - 24 + 7, at + 24):
         damaged = bytearray(data)
         damaged[place] ^= 0x10
         (tmp_path / "half.restart").write_bytes(damaged)

@@ -190,11 +190,16 @@ def test_periods_and_walls(tmp_path, axes, boundary, box, said):
 
 @pytest.mark.parametrize("walls, said", [
     ("box -6 6 NULL 6", "'box' has NULL for ylo but not for yhi"), ("box -6 6 -6 NULL", "'NULL' is not a finite number"),
-    ("cylinder 0 0 6", "NULL NULL along periodic axes"), ("walls add block -6 6 -6 6 0 19", "NULL NULL along periodic axes"),
+    ("cylinder 0 0.5 6", "walls along y, at -5.5 and 6.5, are not within the simulation box"),
+    ("walls add block -6 6 -6 5.5 0 19 walls cut sphere 0 5 3 2", "'walls cut sphere 0 5 3 2': space repeats along y, from -6 to 6"),
+    ("walls add block -6 6 -6 6 0 19 walls cut plane 0 0 9 0 0.1 1", "without a change along y"),
+    ("region silo", "walls of a region cannot repeat"),
 ])
 def test_other_walls(tmp_path, walls, said):
     write_data(tmp_path / "packing.data", lattice("y"), box=BOX)
-    assert said in error_of(deck(fix=f"fix drain all spot {walls} {OPENING} {RATES}", run="run 1", boundary="f p f"), tmp_path)
+    fix = f"fix drain all spot {walls} {OPENING} {RATES}"
+    error = error_of(deck(fix=fix, run="run 1", boundary="f p f", before="region silo block -5 5 -5 5 0 19"), tmp_path)
+    assert said in error, error
 
 
 @pytest.mark.parametrize("change, said", [

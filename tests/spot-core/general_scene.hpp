@@ -175,6 +175,8 @@ class GeneralScene {
   static constexpr double window() { return 0.01; }
 
   double diameter() const { return diameter_; }
+  const spot::Vector3& low() const { return low_; }
+  const spot::Vector3& high() const { return high_; }
   double extent() const { return 100.0 * diameter_; }
   bool equal() const { return equal_; }
   const std::vector<spot::Grain>& grains() const { return grains_; }

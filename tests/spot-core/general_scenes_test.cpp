@@ -14,6 +14,7 @@
 #include "invariants.hpp"
 #include "ranks_of_threads.hpp"
 #include "scenes.hpp"
+#include "spot/drivers/recirculation.hpp"
 
 namespace {
 
@@ -159,6 +160,59 @@ TEST(GeneralScenesInvariance, MovingEverythingAlongAPeriodMovesTheResult) {
     };
     scenes::expect_identical(drained_at(3.0), drained_at(-3.0));
   }
+}
+
+/// From half way on, what drains comes in again, from above or right above the bed.
+All recirculate(const scenes::GeneralScene& scene, bool on_surface, int ranks, std::int64_t& put_back) {
+  All all;
+  std::mutex mutex;
+  put_back = 0;
+  scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
+    const auto drainage = scene.start_windowed(1, communicator);
+    const double d = scene.diameter();
+    spot::Inlet inlet{scene.low(), scene.high() + Vector3(0.0, 0.0, 40.0 * d), on_surface, {}, "the top"};
+    if (!on_surface) inlet.low.z() = scene.high().z() + 8.0 * d;
+    const spot::Recirculation recirculation(scene.spots().seed, inlet, scene.silo(), d);
+    std::int64_t own = 0;
+    for (int k = 1; k <= 6; ++k) {
+      drainage->advance_to(0.15 * k);
+      const auto drained = drainage->take_drained();
+      if (k < 3) continue;
+      recirculation.put_back(*drainage, drained, k, *communicator);
+      own += static_cast<std::int64_t>(drained.size());
+    }
+    drainage->require_inside();
+    const std::lock_guard<std::mutex> lock(mutex);
+    put_back += own;
+    add_grains(*drainage, all);
+  });
+  return all;
+}
+
+TEST(GeneralScenesInvariance, GrainsGoRound) {
+  std::int64_t all_put_back = 0, put_back = 0;
+  std::size_t shared = 0, collapsed = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const scenes::GeneralScene scene(seed);
+    SCOPED_TRACE(scene.description());
+    try {
+      const All alone = recirculate(scene, seed % 2 == 0, 1, put_back);
+      all_put_back += put_back;
+      const auto plain = scene.start_windowed(1);
+      plain->advance_to(0.3);
+      EXPECT_EQ(alone.size(), plain->grains().size()) << "no more are lost than had drained before";
+      if (seed % 3 != 0) continue;
+      EXPECT_TRUE(recirculate(scene, seed % 2 == 0, 3, put_back) == alone);
+      ++shared;
+    } catch (const spot::CollapsedPacking&) {
+      ++collapsed;
+    } catch (const spot::InvalidParameter& error) {
+      expect_looser_at_rest(error);
+    }
+  }
+  EXPECT_LE(collapsed, 1u);
+  EXPECT_GE(shared, 7u);
+  EXPECT_GT(all_put_back, 200);
 }
 
 /// A heap in the middle of a wide base, which nothing leaves on any side.

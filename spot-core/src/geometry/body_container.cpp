@@ -3,9 +3,27 @@
 
 #include <algorithm>
 
+#include "geometry/cells_on_path.hpp"
+
 namespace spot {
 
+BodyContainer::BodyContainer(const Outlets& outlets, const SpotBuffers& buffers, const Periodic& periodic)
+    : outlets_(outlets), periodic_(periodic), buffers_(buffers), base_(outlets) {
+  outlets_.require_within(periodic_);
+}
+
 std::optional<WallOnPath> BodyContainer::first_wall(const Vector3& from, const Vector3& to) const {
+  if (!periodic_.any()) return first_wall_in_cell(from, to);
+  return first_in_cells(periodic_, from, to,
+                        [this](const Vector3& first, const Vector3& last) { return first_wall_in_cell(first, last); });
+}
+
+bool BodyContainer::meets_base(const Vector3& from, const Vector3& to) const {
+  const auto meet = [this](const Vector3& first, const Vector3& last) { return base_.meet(first, last); };
+  return (periodic_.any() ? first_in_cells(periodic_, from, to, meet) : meet(from, to)).has_value();
+}
+
+std::optional<WallOnPath> BodyContainer::first_wall_in_cell(const Vector3& from, const Vector3& to) const {
   const bool rises = from.z() < outlets_.height();
   const auto passed = outlets_.passed_at(from, to);
   if (rises && !passed) return std::nullopt;
@@ -20,6 +38,14 @@ std::optional<WallOnPath> BodyContainer::first_wall(const Vector3& from, const V
 }
 
 std::optional<Vector3> BodyContainer::reflect_spot(const Vector3& start, const Vector3& target) const {
+  if (!periodic_.any()) return reflect_in_cell(start, target);
+  const Vector3 into_cell = periodic_.wrap(target) - target;
+  auto end = reflect_in_cell(start + into_cell, target + into_cell);
+  if (end) *end -= into_cell;
+  return end;
+}
+
+std::optional<Vector3> BodyContainer::reflect_in_cell(const Vector3& start, const Vector3& target) const {
   constexpr int rounds = 8;
   // A mirror makes a step longer only by what the start is closer to the wall than the buffer.
   const double longest = (target - start).norm() + 2.0 * std::max(buffers_.side, buffers_.base);
@@ -27,7 +53,7 @@ std::optional<Vector3> BodyContainer::reflect_spot(const Vector3& start, const V
   for (int round = 0; round < rounds; ++round) {
     position = base_.reflect_spot(buffers_.base, position);
     if ((position - start).norm() > longest) break;
-    if (base_.meet(start, position)) break;
+    if (meets_base(start, position)) break;
     if (const auto wall = first_wall(start, position)) {
       if (wall->normal.isZero()) break;
       const double behind = wall->normal.dot(start + wall->share * (position - start) - position);

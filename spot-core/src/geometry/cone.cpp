@@ -53,6 +53,10 @@ class Cone : public Surface {
     return {point_.x(), point_.y(), point_.z(), size * axis_.x(), size * axis_.y(), size * axis_.z(), size * slope_};
   }
 
+  std::shared_ptr<const Surface> moved(const Vector3& by) const override {
+    return std::make_shared<Cone>(point_ + by, axis_, slope_);
+  }
+
   bool revolves_about(const Line& axis, double tolerance) const override {
     return axis_.cross(axis.direction).norm() < 1e-12 &&
            (point_ - axis.origin).cross(axis.direction).norm() < tolerance;

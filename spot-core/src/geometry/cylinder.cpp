@@ -32,6 +32,10 @@ class Cylinder : public Surface {
     return {at.x(), at.y(), at.z(), size * axis_.x(), size * axis_.y(), size * axis_.z(), radius_};
   }
 
+  std::shared_ptr<const Surface> moved(const Vector3& by) const override {
+    return std::make_shared<Cylinder>(point_ + by, axis_, radius_);
+  }
+
   double slant(const Vector3& direction) const override { return axis_.cross(direction).norm(); }
 
   bool revolves_about(const Line& axis, double tolerance) const override {

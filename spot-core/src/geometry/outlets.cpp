@@ -46,6 +46,18 @@ Outlets Outlets::repeated(const Periodic& periodic) const {
   return repeated;
 }
 
+void Outlets::require_within(const Periodic& periodic) const {
+  for (const Outlet& outlet : all_)
+    for (int axis = 0; axis < 2; ++axis) {
+      const double half = outlet.hole->half_width(axis),
+                   slack = periodic.along(axis) ? 1e-9 * periodic.length(axis) : 0.0;
+      if (outlet.centre[axis] - half < periodic.low(axis) - slack ||
+          outlet.centre[axis] + half > periodic.high(axis) + slack)
+        throw InvalidContainer(message(outlet.name(), " reaches out of the cell that repeats, along ", "xy"[axis],
+                                       " from ", periodic.low(axis), " to ", periodic.high(axis)));
+    }
+}
+
 const Outlet& Outlets::nearest(const Vector3& place) const {
   if (all_.size() == 1) return all_.front();
   return *std::min_element(all_.begin(), all_.end(),

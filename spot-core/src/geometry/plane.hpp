@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 
 #include "spot/geometry/surface.hpp"
 
@@ -19,6 +20,9 @@ class Plane : public Surface {
   }
   std::array<double, 7> numbers(double size) const override {
     return {size * normal_.x(), size * normal_.y(), size * normal_.z(), offset_};
+  }
+  std::shared_ptr<const Surface> moved(const Vector3& by) const override {
+    return std::make_shared<Plane>(normal_ * offset_ + by, normal_);
   }
   double slant(const Vector3& direction) const override { return std::abs(normal_.dot(direction)); }
   bool revolves_about(const Line& axis, double tolerance) const override;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "geometry/cells_on_path.hpp"
 #include "geometry/directions.hpp"
+#include "spot/geometry/repeated_solid.hpp"
 #include "spot/geometry/shapes.hpp"
 
 namespace spot {
@@ -19,11 +21,15 @@ const Outlets& valid(const Outlets& outlets, const SpotBuffers& buffers) {
 }
 
 /// What is above the outlets, and pipes that lead on below them.
-Solid open_at(const Outlets& outlets, const Solid& solid) {
+Solid open_at(const Outlets& outlets, const Solid& solid, const Periodic& periodic) {
   const Vector3 up = Vector3::UnitZ();
   Solid open = solid & half_space(outlets[0].centre, up);
-  for (const Outlet& outlet : outlets)
-    open = open | (outlet.hole->column(outlet.centre) & half_space(outlet.centre, -up));
+  for (const Outlet& outlet : outlets) {
+    const Vector3 half(outlet.hole->half_width(0), outlet.hole->half_width(1), 0.0);
+    const Solid column =
+        repeated(outlet.hole->column(outlet.centre), outlet.centre - half, outlet.centre + half, periodic);
+    open = open | (column & half_space(outlet.centre, -up));
+  }
   return open;
 }
 
@@ -35,8 +41,10 @@ double narrowest(const Outlets& outlets) {
 
 }  // namespace
 
-ShapedContainer::ShapedContainer(const Solid& solid, const Outlets& outlets, const SpotBuffers& buffers)
-    : BodyContainer(valid(outlets, buffers), buffers), boundary_(open_at(outlets, solid), narrowest(outlets)) {
+ShapedContainer::ShapedContainer(const Solid& solid, const Outlets& outlets, const SpotBuffers& buffers,
+                                 const Periodic& periodic)
+    : BodyContainer(valid(outlets, buffers), buffers, periodic),
+      boundary_(open_at(outlets, solid, periodic), narrowest(outlets)) {
   for (const Outlet& outlet : outlets) require_mouth(outlet);
 }
 
@@ -56,20 +64,22 @@ void ShapedContainer::require_mouth(const Outlet& outlet) const {
 }
 
 bool ShapedContainer::contains(const Vector3& centre) const {
-  return centre.z() >= outlets().height() && boundary_.contains(centre);
+  return centre.z() >= outlets().height() && boundary_.contains(periodic().wrap(centre));
 }
 
 void ShapedContainer::contacts(const Vector3& centre, double reach, WallContacts& contacts) const {
   contacts.clear();
-  if (centre.z() >= outlets().height()) boundary_.add_contacts(centre, reach, contacts);
+  if (centre.z() >= outlets().height()) boundary_.add_contacts(periodic().wrap(centre), reach, contacts);
 }
 
 bool ShapedContainer::may_have_left_to(const Vector3& centre) const {
-  return BasePlate(outlets()).may_have_left_to(centre);
+  const BasePlate base(outlets());
+  return any_image_at_outlets(outlets(), periodic(), centre,
+                              [&](const Vector3& place) { return base.may_have_left_to(place); });
 }
 
 std::optional<WallContact> ShapedContainer::nearest_wall(const Vector3& place, double reach) const {
-  return boundary_.nearest(place, reach);
+  return boundary_.nearest(periodic().wrap(place), reach);
 }
 
 std::optional<WallOnPath> ShapedContainer::first_wall_above(const Vector3& from, const Vector3& to) const {

@@ -40,6 +40,15 @@ void require_base_around(const Outlet& outlet, const std::optional<Interval> (&w
   if (!inside) throw InvalidContainer(message(outlet.name(), " is wider than the base", base));
 }
 
+void require_cell_around(double x, double y, double radius, const Periodic& periodic) {
+  const double centre[] = {x, y};
+  for (int axis = 0; axis < 2; ++axis)
+    if (centre[axis] - radius < periodic.low(axis) || centre[axis] + radius > periodic.high(axis))
+      throw InvalidContainer(message("a cylinder from ", centre[axis] - radius, " to ", centre[axis] + radius,
+                                     " reaches out of the cell that repeats, along ", "xy"[axis], " from ",
+                                     periodic.low(axis), " to ", periodic.high(axis)));
+}
+
 }  // namespace
 
 std::unique_ptr<WalledContainer> box_silo(double x_low, double x_high, double y_low, double y_high,
@@ -78,7 +87,7 @@ std::unique_ptr<WalledContainer> box_silo(const std::optional<Interval>& x, cons
 }
 
 std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius, const Outlets& outlets,
-                                               const SpotBuffers& buffers) {
+                                               const SpotBuffers& buffers, const Periodic& periodic) {
   auto wall = std::make_unique<CylinderWall>(x, y, radius);
   if (radius < buffers.side)
     throw InvalidContainer(message("cylinder radius is ", radius, " but spots keep ", buffers.side, " from its wall"));
@@ -91,6 +100,8 @@ std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius
   auto silo = std::make_unique<WalledContainer>(outlets);
   silo->add(std::make_unique<BasePlate>(outlets), buffers.base);
   silo->add(std::move(wall), buffers.side);
+  require_cell_around(x, y, radius, periodic);
+  silo->repeat(periodic);
   return silo;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <memory>
+
 #include "spot/geometry/surface.hpp"
 
 namespace spot {
@@ -13,6 +15,9 @@ class Sphere : public Surface {
   Vector3 normal(const Vector3& point) const override { return (centre_ - point).normalized(); }
   Quadratic along(const Line& line) const override;
   std::array<double, 7> numbers(double) const override { return {centre_.x(), centre_.y(), centre_.z(), radius_}; }
+  std::shared_ptr<const Surface> moved(const Vector3& by) const override {
+    return std::make_shared<Sphere>(centre_ + by, radius_);
+  }
   bool revolves_about(const Line& axis, double tolerance) const override;
 
   const Vector3& centre() const { return centre_; }

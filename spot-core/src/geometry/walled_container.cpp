@@ -4,28 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/cells_on_path.hpp"
 #include "spot/base/errors.hpp"
 
 namespace spot {
-
-namespace {
-
-/// The shares of a straight path at which it passes from cell to cell, in increasing order, and 1 for its end.
-std::vector<double> ends_of_pieces(const Periodic& periodic, const Vector3& from, const Vector3& to) {
-  std::vector<double> ends = {1.0};
-  for (int axis = 0; axis < 2; ++axis) {
-    if (!periodic.along(axis) || from[axis] == to[axis]) continue;
-    const double least = std::min(from[axis], to[axis]), most = std::max(from[axis], to[axis]);
-    double border =
-        periodic.low(axis) + std::ceil((least - periodic.low(axis)) / periodic.length(axis)) * periodic.length(axis);
-    for (; border < most; border += periodic.length(axis))
-      if (border > least) ends.push_back((border - from[axis]) / (to[axis] - from[axis]));
-  }
-  std::sort(ends.begin(), ends.end());
-  return ends;
-}
-
-}  // namespace
 
 void WalledContainer::add(std::unique_ptr<Wall> wall, double spot_buffer) {
   if (!(spot_buffer >= 0.0) || !std::isfinite(spot_buffer))
@@ -44,15 +26,7 @@ void WalledContainer::require_no_period_across(const AxisPlane& plane) const {
 }
 
 void WalledContainer::repeat(const Periodic& periodic) {
-  for (const Outlet& outlet : outlets_)
-    for (int axis = 0; axis < 2; ++axis) {
-      const double half = outlet.hole->half_width(axis),
-                   slack = periodic.along(axis) ? 1e-9 * periodic.length(axis) : 0.0;
-      if (outlet.centre[axis] - half < periodic.low(axis) - slack ||
-          outlet.centre[axis] + half > periodic.high(axis) + slack)
-        throw InvalidContainer(message(outlet.name(), " reaches out of the cell that repeats, along ", "xy"[axis],
-                                       " from ", periodic.low(axis), " to ", periodic.high(axis)));
-    }
+  outlets_.require_within(periodic);
   periodic_ = periodic;
   for (const AxisPlane& plane : axis_planes_) require_no_period_across(plane);
 }
@@ -69,11 +43,7 @@ bool WalledContainer::may_have_left_to(const Vector3& place) const {
     return std::all_of(walls_.begin(), walls_.end(),
                        [&](const Bounded& b) { return b.wall->may_have_left_to(centre); });
   };
-  if (!periodic_.any()) return may_have_left(place);
-  // Below an outlet grains may have gone on into the next cell: to the image nearest to its axis.
-  return std::any_of(outlets_.begin(), outlets_.end(), [&](const Outlet& outlet) {
-    return may_have_left(outlet.centre + periodic_.nearest(Vector3(place - outlet.centre)));
-  });
+  return periodic_.any() ? any_image_at_outlets(outlets_, periodic_, place, may_have_left) : may_have_left(place);
 }
 
 void WalledContainer::contacts(const Vector3& place, double reach, WallContacts& contacts) const {
@@ -97,17 +67,8 @@ void WalledContainer::other_contacts(const Vector3& place, double reach, WallCon
 
 std::optional<WallOnPath> WalledContainer::first_wall(const Vector3& from, const Vector3& to) const {
   if (!periodic_.any()) return first_wall_in_cell(from, to);
-  double begin = 0.0;
-  for (const double end : ends_of_pieces(periodic_, from, to)) {
-    const Vector3 first = from + begin * (to - from), last = end == 1.0 ? to : from + end * (to - from);
-    const Vector3 middle = 0.5 * (first + last), into_cell = periodic_.wrap(middle) - middle;
-    if (auto wall = first_wall_in_cell(first + into_cell, last + into_cell)) {
-      wall->share = begin + wall->share * (end - begin);
-      return wall;
-    }
-    begin = end;
-  }
-  return std::nullopt;
+  return first_in_cells(periodic_, from, to,
+                        [this](const Vector3& first, const Vector3& last) { return first_wall_in_cell(first, last); });
 }
 
 /// Of a path in the cell. Walls go on beyond it.

@@ -8,11 +8,12 @@ namespace spot {
 
 /// Every use of random numbers in spot-core. A new use gets a new number, so that no two uses share draws.
 enum class RandomPurpose : std::uint64_t {
-  birth = 1,      ///< when and where spot `id` is born
-  step = 2,       ///< when and where to step `step` of spot `id` goes
-  settling = 3,   ///< to which side grain `id` rolls in sweep `step`
-  fall = 4,       ///< how fast grain `id` falls
-  nonaffine = 6,  ///< how grain `id` goes against its neighbours in level `step` of its fall
+  birth = 1,          ///< when and where spot `id` is born
+  step = 2,           ///< when and where to step `step` of spot `id` goes
+  settling = 3,       ///< to which side grain `id` rolls in sweep `step`
+  fall = 4,           ///< how fast grain `id` falls
+  nonaffine = 6,      ///< how grain `id` goes against its neighbours in level `step` of its fall
+  recirculation = 7,  ///< where grain `id` comes in again, at time and attempt `step`
 };
 
 /// Four uniform numbers in [0, 1) that depend on the arguments alone (Philox4x64-10, Salmon et al., SC11).

@@ -29,6 +29,9 @@ class Outlets {
   /// The same where space repeats: a slot as long as the period has no ends along that axis, and begins with the cell.
   Outlets repeated(const Periodic& periodic) const;
 
+  /// Throws InvalidContainer, naming it, if one reaches out of the cell that repeats.
+  void require_within(const Periodic& periodic) const;
+
   double height() const { return all_.front().centre.z(); }
 
   /// That whose hole is nearest to a place, or around it, whatever its height.

@@ -16,7 +16,11 @@ class ShapedContainer : public BodyContainer {
  public:
   /// Throws InvalidContainer unless the buffers are not negative, and all of every outlet opens into the solid; and as
   /// Boundary does.
-  ShapedContainer(const Solid& solid, const Outlets& outlets, const SpotBuffers& buffers);
+  ///
+  /// Where space repeats, the solid must be made of shapes that do, by repeated(); its walls are asked for up to a
+  /// period away at most.
+  ShapedContainer(const Solid& solid, const Outlets& outlets, const SpotBuffers& buffers,
+                  const Periodic& periodic = {});
 
   bool contains(const Vector3& centre) const override;
   void contacts(const Vector3& centre, double reach, WallContacts& contacts) const override;

@@ -22,8 +22,8 @@ std::unique_ptr<WalledContainer> box_silo(const std::optional<Interval>& x, cons
                                           const Periodic& periodic, const Outlets& outlets, const SpotBuffers& buffers);
 
 /// A silo with an upright cylindrical wall and a flat base at the height of the outlets.
-/// Throws InvalidContainer if an outlet reaches beyond the wall.
+/// Throws InvalidContainer if an outlet reaches beyond the wall, or the wall out of the cell, where space repeats.
 std::unique_ptr<WalledContainer> cylinder_silo(double x, double y, double radius, const Outlets& outlets,
-                                               const SpotBuffers& buffers);
+                                               const SpotBuffers& buffers, const Periodic& periodic = {});
 
 }  // namespace spot

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 
 #include "spot/base/vector.hpp"
@@ -45,6 +46,9 @@ class Surface {
   /// Numbers that say what it is: lengths, and directions times `size`. Two surfaces of one kind whose numbers are the
   /// same are the same surface.
   virtual std::array<double, 7> numbers(double size) const = 0;
+
+  /// The same, displaced.
+  virtual std::shared_ptr<const Surface> moved(const Vector3& by) const = 0;
 
   /// The sine of the angle at which lines with this unit direction leave it, if it is the same for all of its points or
   /// if some stay in it: 0 where they do. 1 for surfaces without such lines.
