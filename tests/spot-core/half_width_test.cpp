@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "general_scene.hpp"
 #include "scenes.hpp"
 #include "spot/geometry/shaped_container.hpp"
 #include "spot/geometry/shapes.hpp"
