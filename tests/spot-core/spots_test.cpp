@@ -622,7 +622,7 @@ TEST(SpotWalkStatistical, SpotsDriftAsTheFlowIsSheared) {
   SpotParameters parameters = scenes::paper_spots();
   parameters.radius = 3.0;
   parameters.fixed_volume = 77.0;
-  parameters.spread = 0.2;
+  parameters.spread = 0.6;
   spot::FlowField flow(parameters, *space, 1.0);
   for (double x = -30.0; x <= 30.0; x += 0.75)
     for (double y = -9.0; y <= 9.0; y += 0.75)
@@ -653,7 +653,8 @@ TEST(SpotWalkStatistical, SpotsDriftAsTheFlowIsSheared) {
     const double drift = (parameters.spread / shear - parameters.diffusion_length()) * slope;
     EXPECT_NEAR(mean.x(), drift, 4.0 * error + 0.002) << "4 standard errors, and the lattice's";
     EXPECT_NEAR(mean.y(), 0.0, 4.0 * error + 0.002);
-    EXPECT_GT(std::abs(drift - (0.2 / 0.1 - parameters.diffusion_length()) * 0.1 * (wall_shear > 0.0)), 5.0 * error)
+    const double deep = (parameters.spread / slope - parameters.diffusion_length()) * slope;
+    EXPECT_GT(std::abs(drift - (wall_shear > 0.0 ? deep : 0.0)), 5.0 * error)
         << "it can be told from none, and from that without the surface";
   }
 }
