@@ -20,7 +20,7 @@ root_doc = "docs/index"
 # docs/index.md is the front page of the site, README.md that of the repository.
 include_patterns = ["docs/**", "*.md", "*/README.md", "examples/**/*.md", "liggghts-inputs/**/README.md",
                     "lammps-package/doc/*.rst"]
-exclude_patterns = ["README.md", "docs/site", "build*", "results", "**/.*"]
+exclude_patterns = [".pytest_cache", "README.md", "docs/site", "build*", "results", "**/.*"]
 
 myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # a note may begin with a heading of any level
