@@ -58,7 +58,8 @@ std::vector<EnclosedGrain> gas(double fraction, double top, int volume = spot::g
 std::optional<double> at_rest(const std::vector<EnclosedGrain>& grains, const SpotParameters& spots = critical_spots(),
                               const spot::Container& container = *silo()) {
   spot::Alone alone;
-  return spot::packing_fraction_at_rest(spots, container, 1.0, grains, alone);
+  const auto found = spot::packing_at_rest(spots, container, 1.0, grains, alone);
+  return found ? std::optional<double>(found->fraction) : std::nullopt;
 }
 
 /// Of grains placed at random, so that the mean is uncertain by 1 % (one standard deviation; some 7,000 grains).
@@ -122,9 +123,24 @@ TEST(PackingAtRestInvariance, RanksAndOrderChangeNothing) {
       std::vector<EnclosedGrain> own;
       for (std::size_t k = 0; k < grains.size(); ++k)
         if (static_cast<int>(k) % ranks == communicator->rank()) own.push_back(grains[k]);
-      const auto found = spot::packing_fraction_at_rest(critical_spots(), *silo(), 1.0, own, *communicator);
-      if (found != alone) throw spot::Error(spot::message("another on ", ranks, " ranks: ", *found));
+      const double found = spot::packing_at_rest(critical_spots(), *silo(), 1.0, own, *communicator).value().fraction;
+      if (found != alone) throw spot::Error(spot::message("another on ", ranks, " ranks: ", found));
     });
+}
+
+/// Walls of the box have one half-width everywhere; what they leave of phi_c can be below a bed that phi_c is above.
+TEST(PackingAtRestAnalytic, WallsThatShearLowerWhatTheBedMustHave) {
+  SpotParameters spots = critical_spots();
+  spots.dilatancy = 0.15;
+  const auto grains = gas(0.57, height);
+  spot::Alone alone;
+  const auto unsheared = spot::packing_at_rest(spots, *silo(), 1.0, grains, alone).value();
+  EXPECT_NEAR(unsheared.critical, spots.critical_fraction, 1e-12);
+  spots.wall_shear = 0.7;
+  const auto sheared = spot::packing_at_rest(spots, *silo(), 1.0, grains, alone).value();
+  const double shear = 0.7 * (1.0 / half_width + 1.0 / half_depth);
+  EXPECT_NEAR(sheared.critical, spots.critical_fraction * (1.0 - 0.15 * shear), 1e-9);
+  EXPECT_EQ(sheared.fraction, unsheared.fraction);
 }
 
 std::vector<spot::Grain> filling() {

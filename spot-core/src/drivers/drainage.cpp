@@ -166,11 +166,12 @@ void Drainage::require_dense_start(Communicator& communicator) const {
   visit_grains([&](const Grain& grain) {
     grains.push_back({grain.position, volume_parts(diameter_, radius_in(diameter_, grain))});
   });
-  const auto at_rest = packing_fraction_at_rest(spots_, container(), diameter_, grains, communicator);
-  if (!at_rest || spots_.critical_fraction <= (1.0 + calibration::most_above_rest) * *at_rest) return;
+  const auto at_rest = packing_at_rest(spots_, container(), diameter_, grains, communicator);
+  if (!at_rest || at_rest->critical <= (1.0 + calibration::most_above_rest) * at_rest->fraction) return;
+  const double part_left = at_rest->critical / spots_.critical_fraction;  // of phi_c, by walls
   throw InvalidParameter(message("critical packing fraction is ", spots_.critical_fraction, " but must be at most ",
-                                 (1.0 + calibration::most_above_rest) * *at_rest, ": the packing at rest has ",
-                                 *at_rest));
+                                 (1.0 + calibration::most_above_rest) * at_rest->fraction / part_left,
+                                 ": the packing at rest has ", at_rest->fraction));
 }
 
 }  // namespace spot

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 
+#include "spot/geometry/half_width.hpp"
 #include "spot/walk/calibration.hpp"
 #include "spot/walk/critical_state.hpp"
 #include "spot/walk/free_surface.hpp"
@@ -72,10 +73,16 @@ class Places {
     return sums;
   }
 
-  /// What all of them together enclose at the critical packing fraction, in grain volumes.
-  double critical(const CriticalState& state) const {
+  /// What all of them together enclose at the critical packing fraction, in grain volumes, where walls shear by
+  /// `wall_shear` over the half-width.
+  double critical(const CriticalState& state, double wall_shear) const {
+    const double farthest = calibration::farthest_walls * lattice_.spacing().x();
     double sum = 0.0;
-    for (const auto& [node, number] : places_) sum += state.enclosed(lattice_.point(node), 0.0, container_);
+    for (const auto& [node, number] : places_) {
+      const Vector3 place = lattice_.point(node);
+      const double shear = wall_shear > 0.0 ? wall_shear / half_width(container_, place, farthest) : 0.0;
+      sum += state.enclosed(place, shear, container_);
+    }
     return sum;
   }
 
@@ -108,9 +115,9 @@ class Places {
 
 }  // namespace
 
-std::optional<double> packing_fraction_at_rest(const SpotParameters& parameters, const Container& container,
-                                               double diameter, const std::vector<EnclosedGrain>& grains,
-                                               Communicator& communicator) {
+std::optional<PackingAtRest> packing_at_rest(const SpotParameters& parameters, const Container& container,
+                                             double diameter, const std::vector<EnclosedGrain>& grains,
+                                             Communicator& communicator) {
   FreeSurface surface(parameters, container, diameter);
   std::vector<Vector3> centres;
   for (const EnclosedGrain& grain : grains) {
@@ -125,8 +132,10 @@ std::optional<double> packing_fraction_at_rest(const SpotParameters& parameters,
   if (places.size() < calibration::least_places_at_rest || places.size() > most) return std::nullopt;
   std::int64_t enclosed = 0;
   for (const std::int64_t volume : communicator.sum(places.enclosed(grains))) enclosed += volume;
-  const double critical = places.critical(CriticalState(parameters, diameter));
-  return parameters.critical_fraction * (static_cast<double>(enclosed) / grain_volume) / critical;
+  const CriticalState state(parameters, diameter);
+  const double phi_c = parameters.critical_fraction, unsheared = places.critical(state, 0.0);
+  return PackingAtRest{phi_c * (static_cast<double>(enclosed) / grain_volume) / unsheared,
+                       phi_c * places.critical(state, parameters.wall_shear) / unsheared};
 }
 
 }  // namespace spot
