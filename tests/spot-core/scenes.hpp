@@ -48,7 +48,7 @@ class Draws {
 class GrainsByCube {
  public:
   /// Nobody farther than `reach` is of interest.
-  explicit GrainsByCube(double reach) : reach_(reach) {}
+  explicit GrainsByCube(double reach) : reach_(reach > 0.0 ? reach : 1.0) {}
 
   void add(const spot::Grain& grain) { cubes_[cube(grain.position)].push_back(grain); }
 
