@@ -164,6 +164,21 @@ def test_parameters_of_glass_beads_are_those_of_the_deck():
         [1.47 * 0.003, 0.5 * 0.003, 0.15 * 0.003, 0.5 * 0.003])
 
 
+def test_parameters_of_glass_beads_are_those_that_decks_include():
+    text = (ROOT / "lammps-package" / "glass-beads.lmp").read_text()
+    deck = dict(re.findall(r"^variable\s+(\w+)\s+index (\S+)", text, re.MULTILINE))
+    for name, value in deck.items():  # lengths and speeds are of the form $(1.47*v_d), $(2.5*v_d/v_tau)
+        deck[name] = re.sub(r"^\$\(([0-9.]+)\*v_d(?:/v_tau)?\)$", r"\1", value)
+    p = Parameters.glass_beads(1.0, 1.0)
+    same = {"radius": p.radius, "influence": p.influence, "volume": p.volume, "diffusion": p.diffusion_length, "dilation": p.dilation,
+            "speed": p.speed, "critical": p.critical_fraction, "exchange": p.exchange_length, "dilatancy": p.dilatancy, "spread": p.spread,
+            "wall_shear": p.wall_shear, "surface": p.surface_exponent, "nonaffine": p.nonaffine, "own_way": p.nonaffine_length,
+            "closing_gap": p.closing_gap, "closing_share": p.closing_share}
+    assert set(deck) - set(same) == {"profile", "spots_a_grain"}
+    for name, value in same.items():
+        assert float(deck[name]) == pytest.approx(value, rel=1e-12), name
+
+
 # What threads, pieces of time and callbacks change: nothing.
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from ..reading.packing_file import read_packing
 from . import command_line
 from .import_options import UNITS, parse_arguments
 
-EQUAL, NEARLY_EQUAL = 1e-6, 0.01  # spreads of diameters: what fix spot takes, what --equal-sizes makes equal
+EQUAL, NEARLY_EQUAL = 1e-6, 0.01  # spreads of diameters: of equal grains, and what --equal-sizes makes equal
 STICKS_OUT, THROUGH = 0.01, 0.3  # d beyond a wall: grains that are counted, and that are refused
 GRAINS = (1e-5, 0.1)  # m that a grain's diameter is likely to be between
 DENSITY = 2500.0  # kg/m3, glass
@@ -34,9 +34,9 @@ def one_diameter(options, grains, scale):
         return mean * scale
     sizes = f"diameters are {low * scale:.6g} to {high * scale:.6g}, up to {100 * spread:.2g} % off their mean"
     if spread > NEARLY_EQUAL:
-        raise AnalysisError(f"{options.packing}: {sizes}; fix spot takes equal grains, and --equal-sizes makes equal what is within 1 %")
+        raise AnalysisError(f"{options.packing}: {sizes}; this makes decks of equal grains, and --equal-sizes makes equal what is within 1 %")
     if not options.equal_sizes:
-        raise AnalysisError(f"{options.packing}: {sizes}; fix spot takes equal grains: --equal-sizes gives all of them the mean")
+        raise AnalysisError(f"{options.packing}: {sizes}; this makes decks of equal grains: --equal-sizes gives all of them the mean")
     print(f"sizes: {sizes}; all have {mean * scale:.6g} now")
     return mean * scale
 

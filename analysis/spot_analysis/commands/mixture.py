@@ -1,67 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Compare how a mixture of sizes drains from a flat box: DEM and runs of the spot model, quantity by quantity."""
 
-import argparse
-import json
-import math
-import os
-
-from ..base.errors import AnalysisError
 from ..reading.dump import read_frames
 from ..reading.scene import load_scene
 from ..report import plots_mixture
 from ..statistics import mixture
-from . import command_line
-from .quantities import pooled, row
+from . import command_line, quantities
 
 
-def _statistics(source, start, end):
-    """Quantity -> [value, error] of a folder of dumps, or of a file that --output wrote, whose interval must be the same."""
-    if not source.endswith(".json"):
-        scene = load_scene(source)
-        try:
-            return mixture.measure(read_frames(source, extra=("radius",), warn=command_line.print_warning), scene, start, end)
-        except ValueError as error:
-            raise AnalysisError(f"{source}: {error}") from error
-    try:
-        with open(source, encoding="utf-8") as handle:
-            stored = json.load(handle)
-        if stored["interval"] != [start, end]:
-            raise AnalysisError(f"{source}: holds the interval {stored['interval'][0]:g} to {stored['interval'][1]:g} tau, not "
-                                f"{start:g} to {end:g}")
-        return stored["quantities"]
-    except (ValueError, KeyError, TypeError) as error:
-        raise AnalysisError(f"{source}: no statistics of a mixture ({error})") from error
+def _measure(folder, start, end):
+    scene = load_scene(folder)
+    return mixture.measure(read_frames(folder, extra=("radius",), warn=command_line.print_warning), scene, start, end)
 
 
 def compare():
-    parser = argparse.ArgumentParser(description=__doc__, epilog="Lengths are in d, that of a grain of mean volume; times in tau.")
-    parser.add_argument("runs", nargs="+", metavar="RUN",
-                        help="folder of dumps with scene.json, or a file of --output; the first is what the others are compared with")
-    parser.add_argument("--from", dest="start", type=float, default=10.0, metavar="TAU", help="default: %(default)g")
-    parser.add_argument("--to", dest="end", type=float, default=30.0, metavar="TAU", help="default: %(default)g")
-    parser.add_argument("--plot", metavar="FILE.png", help="draws profiles of the fall, and the composition of what leaves")
-    parser.add_argument("-o", "--output", metavar="FILE.json", help="keeps the statistics of the first run")
-    options = parser.parse_args()
-    if not 0 <= options.start < options.end:
-        parser.error("--from must not be negative, and below --to")
-    if options.output and not options.output.endswith(".json"):
-        parser.error(f"--output '{options.output}' must end in .json")
-    if options.plot and len(options.runs) == 1:
-        parser.error("--plot compares, so it needs two runs or more")
-    runs = [_statistics(run, options.start, options.end) for run in options.runs]
-    if options.output:
-        with open(options.output, "w", encoding="utf-8") as handle:
-            json.dump({"interval": [options.start, options.end], "quantities": runs[0]}, handle, indent=1)
-            handle.write("\n")
-        print(f"{options.output}: {len(runs[0])} quantities, {os.path.getsize(options.output)} bytes")
-    spot = pooled(runs[1:]) if len(runs) > 1 else {}
-    heading = [options.runs[0], f"{len(runs) - 1} of spot", "difference"]
-    print(f"| {options.start:g} to {options.end:g} tau | " + " | ".join(heading) + " |\n|---|---|---|---|")
-    for name, value in runs[0].items():
-        print(row(name, value, spot.get(name, [math.nan, math.nan])))
+    options = quantities.parse_arguments(__doc__, "Lengths are in d, that of a grain of mean volume; times in tau.", end=30.0,
+                                         plot="draws profiles of the fall, and the composition of what leaves")
+    reference, *runs = [quantities.statistics(run, options, "mixture", _measure) for run in options.runs]
+    quantities.keep(reference, options)
+    spot = quantities.pooled(runs) if runs else {}
+    quantities.print_table(reference, spot, options)
     if options.plot:
-        plots_mixture.save(options.plot, runs[0], spot)
+        plots_mixture.save(options.plot, reference, spot)
         print(f"{options.plot}: profiles of the fall, composition of what leaves")
 
 

@@ -1,7 +1,61 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Quantities, name -> [value, error], of a reference and of several runs, side by side."""
+"""Compare quantities, name -> [value, error], of a reference with those of several runs: what the commands for hoppers and
+mixtures share."""
 
+import argparse
+import json
 import math
+import os
+
+from ..base.errors import AnalysisError
+
+
+def parse_arguments(description, epilog, end, plot):
+    """end : default of --to, tau; plot : help of --plot"""
+    parser = argparse.ArgumentParser(description=description, epilog=epilog)
+    parser.add_argument("runs", nargs="+", metavar="RUN",
+                        help="folder of dumps with scene.json, or a file of --output; the first is what the others are compared with")
+    parser.add_argument("--from", dest="start", type=float, default=10.0, metavar="TAU", help="default: %(default)g")
+    parser.add_argument("--to", dest="end", type=float, default=end, metavar="TAU", help="default: %(default)g")
+    parser.add_argument("--plot", metavar="FILE.png", help=plot)
+    parser.add_argument("-o", "--output", metavar="FILE.json", help="keeps the statistics of the first run")
+    options = parser.parse_args()
+    if not 0 <= options.start < options.end:
+        parser.error("--from must not be negative, and below --to")
+    if options.output and not options.output.endswith(".json"):
+        parser.error(f"--output '{options.output}' must end in .json")
+    if options.plot and len(options.runs) == 1:
+        parser.error("--plot compares, so it needs two runs or more")
+    return options
+
+
+def statistics(source, options, what, measure):
+    """Quantities of a folder of dumps, by measure(folder, start, end), or of a file that --output wrote, whose interval must be the
+    same. what : these statistics are of."""
+    if not source.endswith(".json"):
+        try:
+            return measure(source, options.start, options.end)
+        except ValueError as error:
+            raise AnalysisError(f"{source}: {error}") from error
+    try:
+        with open(source, encoding="utf-8") as handle:
+            stored = json.load(handle)
+        if stored["interval"] != [options.start, options.end]:
+            raise AnalysisError(f"{source}: holds the interval {stored['interval'][0]:g} to {stored['interval'][1]:g} tau, not "
+                                f"{options.start:g} to {options.end:g}")
+        return stored["quantities"]
+    except (ValueError, KeyError, TypeError) as error:
+        raise AnalysisError(f"{source}: no statistics of a {what} ({error})") from error
+
+
+def keep(quantities, options):
+    """In the file of --output, if one was named."""
+    if not options.output:
+        return
+    with open(options.output, "w", encoding="utf-8") as handle:
+        json.dump({"interval": [options.start, options.end], "quantities": quantities}, handle, indent=1)
+        handle.write("\n")
+    print(f"{options.output}: {len(quantities)} quantities, {os.path.getsize(options.output)} bytes")
 
 
 def pooled(runs):
@@ -15,8 +69,15 @@ def pooled(runs):
     return pooled
 
 
-def row(name, reference, spot):
-    """Of a table: a quantity of the reference and of spot runs, each [value, error], and how far they are apart."""
+def print_table(reference, spot, options):
+    """A row for each quantity of the reference; those that ``spot`` lacks are unknown."""
+    heading = [options.runs[0], f"{len(options.runs) - 1} of spot", "difference"]
+    print(f"| {options.start:g} to {options.end:g} tau | " + " | ".join(heading) + " |\n|---|---|---|---|")
+    for name, value in reference.items():
+        print(_row(name, value, spot.get(name, [math.nan, math.nan])))
+
+
+def _row(name, reference, spot):
     words = [f"{value:.4g} +- {error:.2g}" if math.isfinite(value) else "unknown" for value, error in (reference, spot)]
     known = math.isfinite(reference[0]) and math.isfinite(spot[0]) and reference[0] != 0
     return "| " + " | ".join([name, *words, f"{100 * (spot[0] / reference[0] - 1):+.1f} %" if known else ""]) + " |"
