@@ -133,7 +133,7 @@ void write_slice(std::ostream& out, const DryRun& run, int across, const Vector3
 
 void write_outlets(std::ostream& out, const DryRun& run) {
   const spot::Outlets& outlets = run.container->outlets();
-  const double grain = 3.14159265358979323846 / 6.0 * run.diameter * run.diameter * run.diameter;
+  const double births_of_a_grain = spot::births_for(1.0, run.command.spots, run.diameter);
   out << '[';
   for (std::size_t k = 0; k < outlets.size(); ++k) {
     const spot::Outlet& outlet = outlets[k];
@@ -141,7 +141,7 @@ void write_outlets(std::ostream& out, const DryRun& run) {
     out << (k == 0 ? "" : ", ") << "{\"name\": \"" << outlet.name() << "\", \"centre\": [" << outlet.centre.x() << ", "
         << outlet.centre.y() << ", " << outlet.centre.z() << "], \"half_widths\": [" << outlet.hole->half_width(0)
         << ", " << outlet.hole->half_width(1) << "], \"births\": " << births
-        << ", \"outflow\": " << births * run.command.spots.missing_volume(run.diameter) / grain << "}";
+        << ", \"outflow\": " << births / births_of_a_grain << "}";
   }
   out << ']';
 }

@@ -36,17 +36,9 @@ spot::SpotParameters spots() {
   return spots;
 }
 
-spot::RelaxationParameters relaxation() {
-  spot::RelaxationParameters relaxation;
-  relaxation.tolerance = 3e-3;
-  relaxation.momentum = 0.6;
-  relaxation.contact_overlap = 1.5e-3;
-  return relaxation;
-}
-
 template <typename Start>
 std::unique_ptr<WindowedDrainage> windowed(const Start& start, std::shared_ptr<spot::Communicator> ranks) {
-  return std::make_unique<WindowedDrainage>(spots(), relaxation(), spot::DrainageLimits{-1.0}, window, 1,
+  return std::make_unique<WindowedDrainage>(spots(), scenes::loose_relaxation(), spot::DrainageLimits{-1.0}, window, 1,
                                             scenes::small_silo(half_width, half_depth), 1.0, 100.0, start,
                                             std::move(ranks));
 }
@@ -56,7 +48,7 @@ std::unique_ptr<WindowedDrainage> windowed(const std::vector<Grain>& start) {
 }
 
 std::unique_ptr<TimeOrderedDrainage> time_ordered(const std::vector<Grain>& start) {
-  return std::make_unique<TimeOrderedDrainage>(spots(), relaxation(), spot::DrainageLimits{-1.0},
+  return std::make_unique<TimeOrderedDrainage>(spots(), scenes::loose_relaxation(), spot::DrainageLimits{-1.0},
                                                scenes::small_silo(half_width, half_depth),
                                                spot::Packing(1.0, 100.0, start));
 }
@@ -158,7 +150,8 @@ TEST(GrainChangesInvariance, WhoeverLosesItsGroundOnAnotherRankComesDown) {
   EXPECT_TRUE(rest(6) == alone);
 }
 
-/// Last corrections and counts of unrelaxed moves of all others stay: a grain that lies where nobody comes by changes nothing when it goes.
+/// Last corrections and counts of unrelaxed moves of all others stay: a grain that lies where nobody comes by changes
+/// nothing when it goes.
 TEST(GrainChangesInvariance, OthersGoOnAsIfNothingHadHappened) {
   auto grains = filling();
   const Grain far{77777, {5.5, 3.5, 60.0}, true}, near{77778, {-5.5, 3.5, 50.0}, true};

@@ -51,14 +51,6 @@ spot::SpotParameters spots() {
   return spots;
 }
 
-spot::RelaxationParameters relaxation() {
-  spot::RelaxationParameters relaxation;
-  relaxation.tolerance = 3e-3;
-  relaxation.momentum = 0.6;
-  relaxation.contact_overlap = 1.5e-3;
-  return relaxation;
-}
-
 std::shared_ptr<const spot::Container> silo() { return scenes::small_silo(half_width, half_depth); }
 
 /// Repeats along x, and has two outlets.
@@ -74,8 +66,8 @@ template <typename Start>
 std::unique_ptr<spot::WindowedDrainage> windowed(const Start& start, std::shared_ptr<const spot::Container> container,
                                                  std::shared_ptr<spot::Communicator> ranks,
                                                  const spot::SpotParameters& parameters = spots()) {
-  return std::make_unique<spot::WindowedDrainage>(parameters, relaxation(), spot::DrainageLimits{-1.0}, window, 1,
-                                                  std::move(container), 1.0, 100.0, start, std::move(ranks));
+  return std::make_unique<spot::WindowedDrainage>(parameters, scenes::loose_relaxation(), spot::DrainageLimits{-1.0},
+                                                  window, 1, std::move(container), 1.0, 100.0, start, std::move(ranks));
 }
 
 Inlet surface() { return {low, high, true, {}, "the surface"}; }

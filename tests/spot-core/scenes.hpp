@@ -125,6 +125,15 @@ inline std::vector<spot::Grain> dense_grains(const spot::Vector3& low, const spo
   return grains;
 }
 
+/// Looser than any default, for tests in which relaxation is not what is tested.
+inline spot::RelaxationParameters loose_relaxation() {
+  spot::RelaxationParameters relaxation;
+  relaxation.tolerance = 3e-3;
+  relaxation.momentum = 0.6;
+  relaxation.contact_overlap = 1.5e-3;
+  return relaxation;
+}
+
 /// The parameters of 2006 with the drift speed and injection rate of the project's own DEM run, in d and tau.
 inline spot::SpotParameters paper_spots() {
   spot::SpotParameters spots;

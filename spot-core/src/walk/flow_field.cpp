@@ -23,6 +23,10 @@ constexpr double least_part_inside = 0.05;
 
 }  // namespace
 
+double shear_by_walls(double kappa, const Container& container, const Vector3& place, double spacing) {
+  return kappa > 0.0 ? kappa / half_width(container, place, calibration::farthest_walls * spacing) : 0.0;
+}
+
 FlowField::FlowField(const SpotParameters& parameters, const Container& container, double diameter)
     : container_(&container),
       lattice_(container, std::max(parameters.radius, diameter)),
@@ -75,8 +79,7 @@ void FlowField::find_walls() {
     if (walls_[k] != unknown) return;
     walls_[k] = 0.0;
     if (wall_shear_ == 0.0 || volumes_[k] == 0.0) return;
-    const double farthest = calibration::farthest_walls * lattice_.spacing().x();
-    walls_[k] = wall_shear_ / half_width(*container_, place_inside(node), farthest);
+    walls_[k] = shear_by_walls(wall_shear_, *container_, place_inside(node), lattice_.spacing().x());
   });
 }
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <map>
 
-#include "spot/geometry/half_width.hpp"
 #include "spot/walk/calibration.hpp"
 #include "spot/walk/critical_state.hpp"
+#include "spot/walk/flow_field.hpp"
 #include "spot/walk/free_surface.hpp"
 #include "spot/walk/grain_volume.hpp"
 #include "spot/walk/node_lattice.hpp"
@@ -76,11 +76,10 @@ class Places {
   /// What all of them together enclose at the critical packing fraction, in grain volumes, where walls shear by
   /// `wall_shear` over the half-width.
   double critical(const CriticalState& state, double wall_shear) const {
-    const double farthest = calibration::farthest_walls * lattice_.spacing().x();
     double sum = 0.0;
     for (const auto& [node, number] : places_) {
       const Vector3 place = lattice_.point(node);
-      const double shear = wall_shear > 0.0 ? wall_shear / half_width(container_, place, farthest) : 0.0;
+      const double shear = shear_by_walls(wall_shear, container_, place, lattice_.spacing().x());
       sum += state.enclosed(place, shear, container_);
     }
     return sum;

@@ -13,6 +13,10 @@
 
 namespace spot {
 
+/// What walls shear at a place inside them (1 / length): kappa / h, h being the half_width() there. Walls farther than
+/// calibration::farthest_walls of the `spacing` count as that far.
+double shear_by_walls(double kappa, const Container& container, const Vector3& place, double spacing);
+
 /// How fast grains fall from place to place, as told by what spots have carried up, and how that is sheared.
 ///
 /// Grains fall past a place as fast as spots carry free volume up there, so u, the volume that spots have carried for
