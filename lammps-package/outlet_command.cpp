@@ -36,6 +36,11 @@ void OutletCommand::read_injection(Words& words) {
   while (words.next_is_number()) rates_.push_back(words.not_negative("the injection rate"));
 }
 
+void OutletCommand::read_outflow(Words& words) {
+  outflow_ = {words.not_negative("the outflow, in grains per time,")};
+  while (words.next_is_number()) outflow_.push_back(words.not_negative("the outflow, in grains per time,"));
+}
+
 void OutletCommand::read_beverloo(Words& words) {
   gravity_ = words.positive("the acceleration of gravity");
   law_ = {};
@@ -64,22 +69,29 @@ void OutletCommand::validate() const {
     throw InvalidParameter(
         "keyword 'orifice' is missing: 'orifice x y z radius' or 'slot x y z width_x width_y' says where grains leave "
         "and spots enter");
-  if (gravity_ && !rates_.empty()) throw InvalidParameter("only one of 'injection' and 'beverloo' can be given");
-  if (!gravity_ && rates_.empty())
+  if (!rates_.empty() + !outflow_.empty() + gravity_.has_value() > 1)
+    throw InvalidParameter("only one of 'injection', 'outflow' and 'beverloo' can be given");
+  if (rates_.empty() && outflow_.empty() && !gravity_)
     throw InvalidParameter(
-        "keyword 'injection' is missing: spots born per time at each outlet, outflow / (influence * grains a spot); or "
-        "'beverloo g' predicts it");
-  if (!gravity_ && rates_.size() != outlets_.size())
-    throw InvalidParameter(
-        message("'injection' has ", rates_.size(), rates_.size() == 1 ? " rate" : " rates",
-                outlets_.size() == 1 ? " but there is " : " but there are ", outlets_.size(),
-                outlets_.size() == 1 ? " outlet: give" : " outlets: give one for each, in the order of the outlets"));
+        "keyword 'outflow' is missing: grains that leave per time through each outlet; or 'injection', spots born per "
+        "time, or 'beverloo g', which predicts the outflow");
+  if (!rates_.empty()) require_number_of("injection", rates_.size());
+  if (!outflow_.empty()) require_number_of("outflow", outflow_.size());
   if (!schedules_.empty() && schedules_.rbegin()->first > outlets_.size())
     throw InvalidParameter(message("'schedule ", schedules_.rbegin()->first,
                                    "' is for an outlet that is not there: ", "they count from 1 to ", outlets_.size()));
   if (rates_ == std::vector<double>{0.0})
     throw InvalidParameter("'injection' is 0 but the injection rate must be positive");
+  if (outflow_ == std::vector<double>{0.0}) throw InvalidParameter("'outflow' is 0 but the outflow must be positive");
   static_cast<void>(outlets());
+}
+
+void OutletCommand::require_number_of(const char* keyword, std::size_t rates) const {
+  if (rates == outlets_.size()) return;
+  throw InvalidParameter(
+      message("'", keyword, "' has ", rates, rates == 1 ? " rate" : " rates",
+              outlets_.size() == 1 ? " but there is " : " but there are ", outlets_.size(),
+              outlets_.size() == 1 ? " outlet: give" : " outlets: give one for each, in the order of the outlets"));
 }
 
 void OutletCommand::repeat(const spot::Periodic& periodic) {
@@ -93,6 +105,7 @@ std::optional<spot::Orifice> OutletCommand::single_orifice() const {
 
 spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, double diameter) const {
   std::vector<double> rates = rates_;
+  for (const double grains : outflow_) rates.push_back(spot::births_for(grains, spots, diameter));
   for (const double grains : predicted_outflow(diameter)) rates.push_back(spot::births_for(grains, spots, diameter));
   std::vector<spot::RateSchedule> all;
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -136,6 +149,8 @@ std::string OutletCommand::text_of_outlets() const {
 
 std::string OutletCommand::text_of_rates() const {
   std::string text = gravity_ ? precise("beverloo ", *gravity_, ' ', law_.round, ' ', law_.margin, ' ', law_.slot) : "";
+  if (!outflow_.empty()) text += "outflow";
+  for (const double rate : outflow_) text += precise(' ', rate);
   for (const double rate : rates_) text += (text.empty() ? "" : " ") + precise(rate);
   for (const auto& [outlet, steps] : schedules_) {
     text += message("; schedule ", outlet);

@@ -14,14 +14,15 @@
 
 class Words;
 
-/// What a command says of the outlets of a silo: where they are (`orifice`, `slot`), how many spots enter (`injection`
-/// or `beverloo`), and when they open and close (`schedule`). All that reads throws spot::InvalidParameter that names
-/// the offending word and what is allowed, or spot::InvalidContainer for numbers that make no outlet.
+/// What a command says of the outlets of a silo: where they are (`orifice`, `slot`), how many spots enter (`injection`,
+/// `outflow` or `beverloo`), and when they open and close (`schedule`). All that reads throws spot::InvalidParameter
+/// that names the offending word and what is allowed, or spot::InvalidContainer for numbers that make no outlet.
 class OutletCommand {
  public:
   void read_orifice(Words& words);
   void read_slot(Words& words);
   void read_injection(Words& words);
+  void read_outflow(Words& words);
   void read_beverloo(Words& words);
   void read_schedule(Words& words);
 
@@ -37,8 +38,11 @@ class OutletCommand {
   /// If there is one outlet, and it is round.
   std::optional<spot::Orifice> single_orifice() const;
 
-  /// Births at each outlet. With `beverloo` they are as many as carry the outflow that is predicted.
+  /// Births at each outlet. With `outflow` and `beverloo` they are as many as carry what is given, or predicted.
   spot::Injection injection(const spot::SpotParameters& spots, double diameter) const;
+
+  /// Whether births are to follow what leaves: with `outflow`.
+  bool holds_outflow() const { return !outflow_.empty(); }
 
   /// By Beverloo's law, the grains that leave through each outlet per time; none without `beverloo`. Throws
   /// spot::InvalidParameter, naming the outlet, if one is too narrow for the law.
@@ -58,11 +62,13 @@ class OutletCommand {
   };
 
   void add(const spot::Outlet& outlet, const std::string& text);
+  void require_number_of(const char* keyword, std::size_t rates) const;
 
   std::vector<spot::Outlet> outlets_;
   std::vector<std::string> texts_;
   std::optional<spot::Orifice> last_orifice_;
-  std::vector<double> rates_;
+  std::vector<double> rates_;      // births
+  std::vector<double> outflow_;    // grains
   std::optional<double> gravity_;  // for Beverloo's law
   spot::BeverlooLaw law_;
   std::map<std::size_t, std::vector<Step>> schedules_;  // by the number of the outlet, from 1 on

@@ -66,6 +66,16 @@ TEST(OutletCommand, SchedulesOpenAndCloseAnOutlet) {
   EXPECT_EQ(rates.outlet_of_birth(3.0, 0.01), 1u);
 }
 
+TEST(OutletCommand, BirthsFollowTheOutflowThatIsGiven) {
+  const SpotCommand c = command_of(box, "orifice -8 0 0 4 orifice 8 0 0 4 outflow 30 10 schedule 2 5 0");
+  EXPECT_TRUE(c.spots.holds_outflow);
+  EXPECT_NEAR(c.spots.injection_rate.at(0, 0.0), 30.0 / (c.spots.influence * 77), 1e-9);
+  EXPECT_NEAR(c.spots.injection_rate.at(1, 4.0), 10.0 / (c.spots.influence * 77), 1e-9);
+  EXPECT_EQ(c.spots.injection_rate.at(1, 6.0), 0.0);
+  EXPECT_EQ(c.outlets.text_of_rates(), "outflow 30 10; schedule 2 5 0");
+  EXPECT_FALSE(command_of(box, "orifice 0 0 0 4 injection 300").spots.holds_outflow);
+}
+
 TEST(OutletCommand, RatesFollowFromBeverloosLaw) {
   // F = C (6 phi / pi) (D/d - k)^2.5 for round holes, with phi = 0.58; C (6 phi / pi) (L/d - k) (W/d - k)^1.5 for
   // slots.
@@ -101,7 +111,13 @@ TEST(OutletCommand, SaysWhereBeverloosLawIsBeyondItsRange) {
 
 TEST(OutletCommand, MistakesAreNamed) {
   EXPECT_THAT(error_of(box, "injection 300"), AllOf(HasSubstr("'orifice' is missing"), HasSubstr("'slot")));
-  EXPECT_THAT(error_of(box, "orifice 0 0 0 4"), AllOf(HasSubstr("'injection' is missing"), HasSubstr("'beverloo g'")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4"),
+              AllOf(HasSubstr("'outflow' is missing"), HasSubstr("'injection'"), HasSubstr("'beverloo g'")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 outflow 30"), HasSubstr("only one of"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 outflow 30 beverloo 1"), HasSubstr("only one of"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow 30 2"), HasSubstr("'outflow' has 2 rates but there is 1"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow -1"), HasSubstr("zero or positive"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow 0"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 beverloo 1"), HasSubstr("only one of"));
   EXPECT_THAT(error_of(box, "orifice -5 0 0 3 orifice 5 0 0 3 injection 300"), HasSubstr("1 rate but there are 2"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 300 20"), HasSubstr("2 rates but there is 1"));
