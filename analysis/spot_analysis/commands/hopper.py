@@ -2,7 +2,7 @@
 """Compare how grains drain from a round hopper: DEM and runs of the spot model, quantity by quantity."""
 
 from ..reading.axial_scene import load_axial_scene
-from ..report import plots_axial
+from ..report import plots_fall
 from ..statistics import axial_flow
 from . import command_line, quantities
 
@@ -21,7 +21,7 @@ def compare():
     spot = quantities.pooled(runs)
     quantities.print_table(reference, spot, options)
     if options.plot:
-        plots_axial.save_profiles(options.plot, reference, spot)
+        plots_fall.save_profiles(options.plot, reference, spot, axial_flow.HEIGHTS, "r")
         print(f"{options.plot}: profiles of the fall")
 
 
