@@ -1,19 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is measured of a box with one or several outlets, on flows that are known."""
 
+import dataclasses
 import json
 
 import numpy as np
 import pytest
 
 from conftest import script
+from spot_analysis.base.errors import SceneError
 from spot_analysis.reading.frame import Frame
-from spot_analysis.reading.scene import Scene
+from spot_analysis.reading.scene import Scene, scene_of
 from spot_analysis.statistics import box_flow
 
 # d = 2, tau = 1
-SCENE = Scene(diameter=2.0, gravity=2.0, timestep=0.5, half_width_x=40.0, half_depth_y=8.0, orifice_radius=8.0)
-OUTLETS = (-10.0, 10.0)
+ONE = Scene(diameter=2.0, gravity=2.0, timestep=0.5, half_width_x=40.0, half_depth_y=8.0, orifice_radius=8.0)
+SCENE = dataclasses.replace(ONE, orifices=2)
 
 
 def falling_frames(speed_at, times=range(0, 13), count=6000):
@@ -30,7 +32,7 @@ def falling_frames(speed_at, times=range(0, 13), count=6000):
 def test_outlets_are_told_apart():
     """Grains fall on the right only."""
     frames = falling_frames(lambda x: 0.5 * (x > 0))
-    found = box_flow.measure(frames, SCENE, 2, 12, OUTLETS)
+    found = box_flow.measure(frames, SCENE, 2, 12)
     assert found["outflow_at_x-10d"][0] == 0
     assert found["outflow_at_x10d"] == found["outflow"]
     height, right = frames[0].positions[:, 2] / 2, frames[0].positions[:, 0] > 0
@@ -48,12 +50,12 @@ def test_a_ridge_is_as_high_as_what_stands_still():
     frames = falling_frames(lambda x: 0 * x)
     for frame in frames:  # what is above 7 d falls, through all below
         frame.positions[:, 2] -= frame.timestep / 2 * (frame.positions[:, 2] > 14.0)
-    found = box_flow.measure(frames, SCENE, 0, 12, OUTLETS)
+    found = box_flow.measure(frames, SCENE, 0, 12)
     assert found["ridge_at_x0d"][0] == 7.0
 
 
 def test_one_outlet_has_profiles_to_both_sides_and_no_ridge():
-    found = box_flow.measure(falling_frames(lambda x: 0.4 - 0.01 * abs(x)), SCENE, 0, 12)
+    found = box_flow.measure(falling_frames(lambda x: 0.4 - 0.01 * abs(x)), ONE, 0, 12)
     for place in (1.0, 9.0, 19.0):
         assert found[f"speed_15d_x{place:.1f}d"][0] == pytest.approx(0.4 - 0.01 * place, abs=0.005)
     assert not any(name.startswith(("ridge", "outflow_at")) or "x-" in name for name in found)
@@ -73,7 +75,7 @@ def test_the_command_compares_and_keeps_statistics(tmp_path):
         run.joinpath(f"drain.{frame.timestep}.dump").write_text(
             f"ITEM: TIMESTEP\n{frame.timestep}\nITEM: NUMBER OF ATOMS\n{len(frame.ids)}\nITEM: BOX BOUNDS ff ff ff\n"
             f"-40 40\n-8 8\n-10 100\nITEM: ATOMS id x y z\n{rows}\n")
-    options = ("--from", 2, "--to", 12, "--outlets", -10, 10)
+    options = ("--from", 2, "--to", 12)
     said = script("box.py", run, *options, "-o", kept)
     assert said.returncode == 0, said.stderr
     said = script("box.py", kept, run, run, *options, "--plot", tmp_path / "profiles.png")
@@ -82,3 +84,17 @@ def test_the_command_compares_and_keeps_statistics(tmp_path):
     rows = [line.split("|")[1:-1] for line in said.stdout.splitlines()[2:] if line.startswith("|")]
     assert len(rows) == len(json.loads(kept.read_text())["quantities"])
     assert all(row[3].strip() in ("+0.0 %", "-0.0 %", "") for row in rows)
+
+
+def test_other_scripts_refuse_more_than_one_round_orifice(tmp_path):
+    for change in ({"orifices": 2}, {"slot": True}):
+        tmp_path.joinpath("scene.json").write_text(json.dumps(dataclasses.replace(ONE, **change).as_dict()))
+        said = script("measure.py", tmp_path, "-o", tmp_path / "statistics.npz")
+        assert said.returncode == 1 and "one round orifice" in said.stderr
+
+
+@pytest.mark.parametrize("values, said", [({"orifices": 0}, "'orifices' must be a whole number from 1 on, not 0"),
+                                          ({"orifices": 1.5}, "'orifices' must be"), ({"slot": 1}, "'slot' must be true or false")])
+def test_scenes_that_do_not_fit_are_named(values, said):
+    with pytest.raises(SceneError, match=said):
+        scene_of({**ONE.as_dict(), **values})

@@ -7,21 +7,14 @@ from ..statistics import box_flow
 from . import command_line, quantities
 
 
-def _add_outlets(parser):
-    parser.add_argument("--outlets", nargs="+", type=float, default=[0.0], metavar="X",
-                        help="x of the outlets' middles, d; default: one at 0, and profiles along |x|")
+def _measure(folder, start, end):
+    scene = load_scene(folder)
+    return box_flow.measure(command_line.frames_of_equal_grains(folder, scene), scene, start, end)
 
 
 def compare():
-    options = quantities.parse_arguments(__doc__, "Lengths are in d, times in tau.", end=20.0, plot="draws the profiles of the fall",
-                                         more=_add_outlets)
-    outlets = tuple(sorted(options.outlets))
-
-    def measure(folder, start, end):
-        scene = load_scene(folder)
-        return box_flow.measure(command_line.frames_of_equal_grains(folder, scene), scene, start, end, outlets)
-
-    reference, *runs = [quantities.statistics(run, options, "box", measure) for run in options.runs]
+    options = quantities.parse_arguments(__doc__, "Lengths are in d, times in tau.", end=20.0, plot="draws the profiles of the fall")
+    reference, *runs = [quantities.statistics(run, options, "box", _measure) for run in options.runs]
     quantities.keep(reference, options)
     if not runs:
         return

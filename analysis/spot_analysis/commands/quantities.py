@@ -10,8 +10,8 @@ import os
 from ..base.errors import AnalysisError
 
 
-def parse_arguments(description, epilog, end, plot, more=lambda parser: None):
-    """end : default of --to, tau; plot : help of --plot; more(parser) : adds options"""
+def parse_arguments(description, epilog, end, plot):
+    """end : default of --to, tau; plot : help of --plot"""
     parser = argparse.ArgumentParser(description=description, epilog=epilog)
     parser.add_argument("runs", nargs="+", metavar="RUN",
                         help="folder of dumps with scene.json, or a file of --output; the first is what the others are compared with")
@@ -19,7 +19,6 @@ def parse_arguments(description, epilog, end, plot, more=lambda parser: None):
     parser.add_argument("--to", dest="end", type=float, default=end, metavar="TAU", help="default: %(default)g")
     parser.add_argument("--plot", metavar="FILE.png", help=plot)
     parser.add_argument("-o", "--output", metavar="FILE.json", help="keeps the statistics of the first run")
-    more(parser)
     options = parser.parse_args()
     if not 0 <= options.start < options.end:
         parser.error("--from must not be negative, and below --to")

@@ -18,14 +18,13 @@ RIDGE = 2.0  # d to both sides of the middle between two outlets, where the ridg
 STILL = 0.5  # d; what has come down less in the interval stands still
 
 
-def measure(frames, scene, start, end, outlets=(0.0,)):
+def measure(frames, scene, start, end):
     """Quantity -> [value, standard error].
 
     frames : Frames of a drainage in the order of time; scene : Scene of the box
     start, end : the interval, tau
-    outlets : x of their middles, ascending, d. With one in the middle profiles are along |x|, otherwise along x.
 
-    Raises ValueError if fewer than three snapshots lie in the interval.
+    With one outlet profiles are along |x|, otherwise along x. Raises ValueError if fewer than three snapshots lie in the interval.
     """
     snapshots = [Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions)) for frame in frames]
     inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
@@ -33,11 +32,12 @@ def measure(frames, scene, start, end, outlets=(0.0,)):
         raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
     pairs = list(zip(inside, inside[1:]))
     found = {"outflow": mean_of([left(*pair) / (pair[1].time - pair[0].time) for pair in pairs])}
+    outlets = scene.container().middles
     if len(outlets) > 1:
         found.update(_outflows(pairs, outlets))
     width, depth = scene.half_width_x / scene.diameter, 2 * scene.half_depth_y / scene.diameter
     for height in HEIGHTS:
-        found.update(_profile(pairs, height, width, folded=outlets == (0.0,)))
+        found.update(_profile(pairs, height, width, folded=len(outlets) == 1))
     found["packing_fraction"] = mean_of([_packing_fraction(s, outlets, depth) for s in inside])
     for level in LEVELS:
         found[f"residence_median_{level:g}d"] = mean_of(residence_medians(snapshots, level, start, end))
