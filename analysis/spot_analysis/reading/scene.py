@@ -21,8 +21,7 @@ LEAST_PERIOD = 12.0  # d; twice as far as pairs of grains are looked for
 class Scene:
     """Units and geometry, in the units of the dump.
 
-    diameter, gravity : grain diameter d, acceleration g
-    timestep : time of one step of the dumps' TIMESTEP
+    diameter, gravity, timestep : grain diameter d; acceleration g; time of one step of the dumps' TIMESTEP
     half_width_x, half_depth_y : walls at x = axis_x +- half_width_x and y = axis_y +- half_depth_y
     periodic_y : there are no walls across y, along which the silo repeats every 2 half_depth_y; a scene file says so by
         half_period_y in the place of half_depth_y
