@@ -388,7 +388,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "walls",     "add",         "cut",
                                                "block",     "cone",        "z",
                                                "plane",     "sphere",      "NULL",
-                                               "recirculate"};
+                                               "recirculate", "hopper", "v_open", "scene"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
