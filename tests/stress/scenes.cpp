@@ -163,6 +163,7 @@ Scene::Scene(std::uint64_t seed)
   spots.injection_rate = drawn_rates(draws, shape.outlets.size());
   spots.profile = spot::InfluenceProfile::parabolic;
   if (draws.below(2) == 0) spots.fixed_volume = 2.5 * std::pow(spots.radius, 3);
+  spots.holds_outflow = draws.below(2) == 0;
   if (draws.below(2) == 0) spots.dilation = draws.uniform(0.01, 0.2);
   if (draws.below(2) == 0) spots.surface_exponent = draws.uniform(0.5, 6.0);
   if (draws.below(2) == 0) spots.nonaffine = 0.15, spots.nonaffine_length = 0.5;
