@@ -2,11 +2,7 @@
 # Installs spot-core into a prefix of its own, builds a project that finds it there, and runs what it built.
 file(REMOVE_RECURSE ${scratch})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${build} --prefix ${scratch}/prefix COMMAND_ERROR_IS_FATAL ANY)
-set(flags)
-if(sanitize)
-  set(flags -DCMAKE_CXX_FLAGS=-fsanitize=${sanitize})
-endif()
 execute_process(COMMAND ${CMAKE_COMMAND} -S ${consumer} -B ${scratch}/consumer -G ${generator}
-  -DCMAKE_CXX_COMPILER=${compiler} -DCMAKE_PREFIX_PATH=${scratch}/prefix ${flags} COMMAND_ERROR_IS_FATAL ANY)
+  -DCMAKE_CXX_COMPILER=${compiler} -DCMAKE_PREFIX_PATH=${scratch}/prefix COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${scratch}/consumer COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${scratch}/consumer/consumer COMMAND_ERROR_IS_FATAL ANY)
