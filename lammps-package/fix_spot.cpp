@@ -373,14 +373,16 @@ void FixSpot::init() {
   try {
     read_period();
     model->command.resolve(model->sizes.mean(), model->sizes.mean_volume);
+    check_box();
+    make_container();
+    model->command.outlets.look_for_hoppers(*model->container);
+    model->command.resolve_rates(model->sizes.mean(), model->sizes.mean_volume);
     tell_predicted_outflow();
     if (*model->command.time_ordered && comm->nprocs > 1)
       throw spot::InvalidParameter(message("relaxation in the order of time runs on 1 MPI rank, not on ", comm->nprocs,
                                            ": use 'accuracy normal', or 'relax tol' with a tolerance"));
     if (model->saved) go_on_with_saved_window();
     choose_window();
-    check_box();
-    make_container();
     if (model->command.recirculation)
       model->recirculation = std::make_unique<spot::Recirculation>(
           model->command.spots.seed, inlet_of(model->command, *domain), model->container, model->sizes.largest);
@@ -423,10 +425,13 @@ void FixSpot::tell_predicted_outflow() {
   if (outflow.empty() || model->told_outflow || comm->me != 0) return;
   model->told_outflow = true;
   const spot::Outlets all = outlets.outlets();
-  for (std::size_t k = 0; k < outflow.size(); ++k)
-    utils::logmesg(lmp, message("fix spot: Beverloo's law predicts an outflow of ", outflow[k],
-                                " grains per time through the ", all[k].name(), ", ",
-                                model->command.spots.injection_rate.largest(k), " births of spots per time\n"));
+  for (std::size_t k = 0; k < outflow.size(); ++k) {
+    const std::string hopper = outlets.text_of_hopper(k);
+    utils::logmesg(
+        lmp, message("fix spot: Beverloo's law predicts an outflow of ", outflow[k], " grains per time through the ",
+                     all[k].name(), ", ", model->command.spots.injection_rate.largest(k), " births of spots per time\n",
+                     hopper.empty() ? "" : "fix spot: this is " + hopper + "\n"));
+  }
   for (const std::string &doubt : outlets.doubts(model->sizes.largest)) error->warning(FLERR, "fix spot: " + doubt);
 }
 

@@ -1,15 +1,30 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "outlet_command.h"
 
+#include <cmath>
 #include <memory>
 
 #include "spot/drivers/defaults.hpp"
+#include "spot/geometry/hopper.hpp"
 #include "spot/geometry/round_hole.hpp"
 #include "spot/geometry/slot.hpp"
 #include "words.h"
 
 using spot::InvalidParameter;
 using spot::message;
+
+namespace {
+
+double read_angle(Words& words, const char* what) {
+  const double degrees = words.positive(what);
+  if (degrees >= 90.0)
+    throw InvalidParameter(message("'hopper' is ", degrees, " but ", what, " must be below 90 degrees"));
+  return degrees;
+}
+
+double degrees_of(double slope) { return std::atan(slope) * 180.0 / 3.14159265358979323846; }  // for texts only
+
+}  // namespace
 
 void OutletCommand::add(const spot::Outlet& outlet, const std::string& text) {
   outlets_.push_back(outlet);
@@ -36,6 +51,11 @@ void OutletCommand::read_injection(Words& words) {
   while (words.next_is_number()) rates_.push_back(words.not_negative("the injection rate"));
 }
 
+void OutletCommand::read_outflow(Words& words) {
+  outflow_ = {words.not_negative("the outflow, in grains per time,")};
+  while (words.next_is_number()) outflow_.push_back(words.not_negative("the outflow, in grains per time,"));
+}
+
 void OutletCommand::read_beverloo(Words& words) {
   gravity_ = words.positive("the acceleration of gravity");
   law_ = {};
@@ -44,6 +64,11 @@ void OutletCommand::read_beverloo(Words& words) {
     law_.margin = words.not_negative("k");
   }
   if (words.next_is_number()) law_.slot = words.positive("C of slots");
+}
+
+void OutletCommand::read_hopper(Words& words) {
+  hopper_ = Hopper{read_angle(words, "the angle of repose"), std::nullopt};
+  if (words.next_is_number()) hopper_->half_angle = read_angle(words, "the half-angle");
 }
 
 void OutletCommand::read_schedule(Words& words) {
@@ -64,27 +89,48 @@ void OutletCommand::validate() const {
     throw InvalidParameter(
         "keyword 'orifice' is missing: 'orifice x y z radius' or 'slot x y z width_x width_y' says where grains leave "
         "and spots enter");
-  if (gravity_ && !rates_.empty()) throw InvalidParameter("only one of 'injection' and 'beverloo' can be given");
-  if (!gravity_ && rates_.empty())
+  if (!rates_.empty() + !outflow_.empty() + gravity_.has_value() > 1)
+    throw InvalidParameter("only one of 'injection', 'outflow' and 'beverloo' can be given");
+  if (hopper_ && !gravity_) throw InvalidParameter("'hopper' goes with 'beverloo', whose outflow it multiplies");
+  if (rates_.empty() && outflow_.empty() && !gravity_)
     throw InvalidParameter(
-        "keyword 'injection' is missing: spots born per time at each outlet, outflow / (influence * grains a spot); or "
-        "'beverloo g' predicts it");
-  if (!gravity_ && rates_.size() != outlets_.size())
-    throw InvalidParameter(
-        message("'injection' has ", rates_.size(), rates_.size() == 1 ? " rate" : " rates",
-                outlets_.size() == 1 ? " but there is " : " but there are ", outlets_.size(),
-                outlets_.size() == 1 ? " outlet: give" : " outlets: give one for each, in the order of the outlets"));
+        "keyword 'outflow' is missing: grains that leave per time through each outlet; or 'injection', spots born per "
+        "time, or 'beverloo g', which predicts the outflow");
+  if (!rates_.empty()) require_number_of("injection", rates_.size());
+  if (!outflow_.empty()) require_number_of("outflow", outflow_.size());
   if (!schedules_.empty() && schedules_.rbegin()->first > outlets_.size())
     throw InvalidParameter(message("'schedule ", schedules_.rbegin()->first,
                                    "' is for an outlet that is not there: ", "they count from 1 to ", outlets_.size()));
   if (rates_ == std::vector<double>{0.0})
     throw InvalidParameter("'injection' is 0 but the injection rate must be positive");
+  if (outflow_ == std::vector<double>{0.0}) throw InvalidParameter("'outflow' is 0 but the outflow must be positive");
   static_cast<void>(outlets());
+}
+
+void OutletCommand::require_number_of(const char* keyword, std::size_t rates) const {
+  if (rates == outlets_.size()) return;
+  throw InvalidParameter(
+      message("'", keyword, "' has ", rates, rates == 1 ? " rate" : " rates",
+              outlets_.size() == 1 ? " but there is " : " but there are ", outlets_.size(),
+              outlets_.size() == 1 ? " outlet: give" : " outlets: give one for each, in the order of the outlets"));
 }
 
 void OutletCommand::repeat(const spot::Periodic& periodic) {
   const spot::Outlets repeated = outlets().repeated(periodic);
   outlets_.assign(repeated.begin(), repeated.end());
+}
+
+void OutletCommand::look_for_hoppers(const spot::Container& walls) {
+  slopes_.clear();
+  if (!gravity_) return;
+  for (const spot::Outlet& outlet : outlets_) {
+    slopes_.push_back(spot::hopper_slope(walls, outlet));
+    if (!hopper_ || hopper_->half_angle || slopes_.back()) continue;
+    throw InvalidParameter(message("'hopper' finds no hopper that ends at the ", outlet.name(),
+                                   ": walls from its rim on, at one angle up to its radius above; give the half-angle, "
+                                   "'hopper ",
+                                   hopper_->of_material, " half-angle'"));
+  }
 }
 
 std::optional<spot::Orifice> OutletCommand::single_orifice() const {
@@ -93,6 +139,7 @@ std::optional<spot::Orifice> OutletCommand::single_orifice() const {
 
 spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, double diameter) const {
   std::vector<double> rates = rates_;
+  for (const double grains : outflow_) rates.push_back(spot::births_for(grains, spots, diameter));
   for (const double grains : predicted_outflow(diameter)) rates.push_back(spot::births_for(grains, spots, diameter));
   std::vector<spot::RateSchedule> all;
   for (std::size_t k = 0; k < rates.size(); ++k) {
@@ -108,24 +155,70 @@ spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, doub
 std::vector<double> OutletCommand::predicted_outflow(double diameter) const {
   std::vector<double> outflow;
   if (!gravity_) return outflow;
-  for (const spot::Outlet& outlet : outlets_) {
-    outflow.push_back(spot::predicted_outflow(*outlet.hole, law_, *gravity_, diameter));
-    if (outflow.back() == 0.0)
-      throw InvalidParameter(message("Beverloo's law predicts no outflow through the ", outlet.name(),
+  for (std::size_t k = 0; k < outlets_.size(); ++k) {
+    const double over_flat_base = spot::predicted_outflow(*outlets_[k].hole, law_, *gravity_, diameter);
+    if (over_flat_base == 0.0)
+      throw InvalidParameter(message("Beverloo's law predicts no outflow through the ", outlets_[k].name(),
                                      ", which is not wider than ", law_.margin, " diameters of ", diameter));
+    outflow.push_back(hopper_factor(k) * over_flat_base);
   }
   return outflow;
+}
+
+/// The tangent of the half-angle of the hopper at an outlet, as given or as the walls have it; none over a flat base.
+std::optional<double> OutletCommand::slope_at(std::size_t outlet) const {
+  if (hopper_ && hopper_->half_angle) return spot::tangent(*hopper_->half_angle);
+  return outlet < slopes_.size() ? slopes_[outlet] : std::nullopt;
+}
+
+double OutletCommand::hopper_factor(std::size_t outlet) const {
+  const auto slope = slope_at(outlet);
+  if (!hopper_ || !slope) return 1.0;
+  if (*slope == 0.0)
+    throw InvalidParameter(message("'hopper' finds a pipe above the ", outlets_[outlet].name(),
+                                   ", for which there is no outflow by Beverloo's law: use 'injection'"));
+  return spot::hopper_factor(*slope, spot::tangent(hopper_->of_material));
+}
+
+std::string OutletCommand::text_of_hopper(std::size_t outlet) const {
+  const auto slope = slope_at(outlet);
+  if (!hopper_ || !slope) return "";
+  return message(hopper_factor(outlet), " times that over a flat base, for a hopper with a half-angle of ",
+                 degrees_of(*slope), " degrees, by Rose and Tanaka, who have cones of less than ",
+                 90.0 - hopper_->of_material);
 }
 
 std::vector<std::string> OutletCommand::doubts(double diameter) const {
   std::vector<std::string> doubts;
   if (!gravity_) return doubts;
-  for (const spot::Outlet& outlet : outlets_)
-    if (const double width = 2.0 * outlet.hole->widest_radius() / diameter; width < spot::BeverlooLaw::least_width)
-      doubts.push_back(message("the ", outlet.name(), " is ", width, " diameters wide: below ",
+  for (std::size_t k = 0; k < outlets_.size(); ++k) {
+    if (const double width = 2.0 * outlets_[k].hole->widest_radius() / diameter; width < spot::BeverlooLaw::least_width)
+      doubts.push_back(message("the ", outlets_[k].name(), " is ", width, " diameters wide: below ",
                                spot::BeverlooLaw::least_width,
                                " grains may clog, which neither Beverloo's law nor the spot model knows"));
+    add_doubts_of_hopper(k, doubts);
+  }
   return doubts;
+}
+
+void OutletCommand::add_doubts_of_hopper(std::size_t outlet, std::vector<std::string>& doubts) const {
+  const auto slope = slope_at(outlet);
+  if (!slope) return;
+  const double degrees = degrees_of(*slope);
+  const auto doubt = [&](const auto&... parts) {
+    doubts.push_back(message("the ", outlets_[outlet].name(), " is the end of a hopper with a half-angle of ", degrees,
+                             " degrees: ", parts...));
+  };
+  if (!hopper_) {
+    doubt("Beverloo's law is for flat bases; keyword 'hopper' multiplies it by what a hopper makes of it");
+    return;
+  }
+  if (degrees < spot::least_half_angle)
+    doubt("below ", spot::least_half_angle, " the factor of 'hopper' grows without a bound");
+  if (degrees >= 90.0 - hopper_->of_material)
+    doubt("from ", 90.0 - hopper_->of_material, " on the factor of 'hopper' is 1, as over a flat base");
+  if (outlets_[outlet].hole->half_width(0) != outlets_[outlet].hole->half_width(1))
+    doubt("the factor of 'hopper' was measured with cones, not with wedges");
 }
 
 std::string OutletCommand::text_of_outlets() const {
@@ -136,6 +229,10 @@ std::string OutletCommand::text_of_outlets() const {
 
 std::string OutletCommand::text_of_rates() const {
   std::string text = gravity_ ? precise("beverloo ", *gravity_, ' ', law_.round, ' ', law_.margin, ' ', law_.slot) : "";
+  if (hopper_) text += precise(" hopper ", hopper_->of_material);
+  if (hopper_ && hopper_->half_angle) text += precise(' ', *hopper_->half_angle);
+  if (!outflow_.empty()) text += "outflow";
+  for (const double rate : outflow_) text += precise(' ', rate);
   for (const double rate : rates_) text += (text.empty() ? "" : " ") + precise(rate);
   for (const auto& [outlet, steps] : schedules_) {
     text += message("; schedule ", outlet);

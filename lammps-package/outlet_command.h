@@ -9,20 +9,24 @@
 #include <vector>
 
 #include "spot/geometry/beverloo.hpp"
+#include "spot/geometry/container.hpp"
 #include "spot/geometry/outlets.hpp"
 #include "spot/walk/parameters.hpp"
 
 class Words;
 
-/// What a command says of the outlets of a silo: where they are (`orifice`, `slot`), how many spots enter (`injection`
-/// or `beverloo`), and when they open and close (`schedule`). All that reads throws spot::InvalidParameter that names
-/// the offending word and what is allowed, or spot::InvalidContainer for numbers that make no outlet.
+/// What a command says of the outlets of a silo: where they are (`orifice`, `slot`), how many spots enter (`injection`,
+/// `outflow` or `beverloo`, with `hopper` above a cone), and when they open and close (`schedule`). All that reads
+/// throws spot::InvalidParameter that names the offending word and what is allowed, or spot::InvalidContainer for
+/// numbers that make no outlet.
 class OutletCommand {
  public:
   void read_orifice(Words& words);
   void read_slot(Words& words);
   void read_injection(Words& words);
+  void read_outflow(Words& words);
   void read_beverloo(Words& words);
+  void read_hopper(Words& words);
   void read_schedule(Words& words);
 
   /// Throws spot::InvalidParameter if something is missing, or does not fit together; and as spot::Outlets does.
@@ -34,15 +38,26 @@ class OutletCommand {
   /// In the order in which they were given.
   spot::Outlets outlets() const { return spot::Outlets(outlets_); }
 
+  /// Which outlets are the ends of hoppers. Throws spot::InvalidParameter, naming it, where 'hopper' has to know the
+  /// half-angle at an outlet, and the walls don't tell. Up to then all bases are flat, but for a half-angle that was
+  /// given.
+  void look_for_hoppers(const spot::Container& walls);
+
   /// If there is one outlet, and it is round.
   std::optional<spot::Orifice> single_orifice() const;
 
-  /// Births at each outlet. With `beverloo` they are as many as carry the outflow that is predicted.
+  /// Births at each outlet. With `outflow` and `beverloo` they are as many as carry what is given, or predicted.
   spot::Injection injection(const spot::SpotParameters& spots, double diameter) const;
+
+  /// Whether births are to follow what leaves: with `outflow`.
+  bool holds_outflow() const { return !outflow_.empty(); }
 
   /// By Beverloo's law, the grains that leave through each outlet per time; none without `beverloo`. Throws
   /// spot::InvalidParameter, naming the outlet, if one is too narrow for the law.
   std::vector<double> predicted_outflow(double diameter) const;
+
+  /// What `hopper` makes of the outflow of an outlet (from 0 on), and for which half-angles that holds; empty without.
+  std::string text_of_hopper(std::size_t outlet) const;
 
   /// What is to be said of the outflow that is predicted: where the law is beyond its range.
   std::vector<std::string> doubts(double diameter) const;
@@ -57,14 +72,27 @@ class OutletCommand {
     double time, factor;
   };
 
+  /// `hopper`: angles in degrees. Without a half-angle the walls tell it.
+  struct Hopper {
+    double of_material;
+    std::optional<double> half_angle;
+  };
+
   void add(const spot::Outlet& outlet, const std::string& text);
+  void require_number_of(const char* keyword, std::size_t rates) const;
+  std::optional<double> slope_at(std::size_t outlet) const;
+  double hopper_factor(std::size_t outlet) const;
+  void add_doubts_of_hopper(std::size_t outlet, std::vector<std::string>& doubts) const;
 
   std::vector<spot::Outlet> outlets_;
   std::vector<std::string> texts_;
   std::optional<spot::Orifice> last_orifice_;
-  std::vector<double> rates_;
+  std::vector<double> rates_;      // births
+  std::vector<double> outflow_;    // grains
   std::optional<double> gravity_;  // for Beverloo's law
   spot::BeverlooLaw law_;
+  std::optional<Hopper> hopper_;
+  std::vector<std::optional<double>> slopes_;           // of the walls at each outlet: tangents of half-angles
   std::map<std::size_t, std::vector<Step>> schedules_;  // by the number of the outlet, from 1 on
 };
 

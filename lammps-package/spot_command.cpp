@@ -109,8 +109,10 @@ const std::map<std::string, Reader>& readers() {
       {"diffusion", [](SpotCommand& c, Words& w) { c.diffusion_length = w.positive("the diffusion length"); }},
       {"dz", [](SpotCommand& c, Words& w) { c.spots.step_height = w.positive("the step height"); }},
       {"speed", [](SpotCommand& c, Words& w) { c.spots.speed = w.positive("the drift speed"); }},
+      {"outflow", [](SpotCommand& c, Words& w) { c.outlets.read_outflow(w); }},
       {"injection", [](SpotCommand& c, Words& w) { c.outlets.read_injection(w); }},
       {"beverloo", [](SpotCommand& c, Words& w) { c.outlets.read_beverloo(w); }},
+      {"hopper", [](SpotCommand& c, Words& w) { c.outlets.read_hopper(w); }},
       {"schedule", [](SpotCommand& c, Words& w) { c.outlets.read_schedule(w); }},
       {"seed",
        [](SpotCommand& c, Words& w) {
@@ -247,8 +249,13 @@ void SpotCommand::resolve(double diameter, double mean_volume) {
   side_buffer = side_buffer.value_or(spot::calibration::side_buffer * diameter);
   base_buffer = base_buffer.value_or(spot::calibration::base_buffer * diameter);
   outlet = outlet.value_or(outlets.outlets().height());
+  resolve_rates(diameter, mean_volume);
+}
+
+void SpotCommand::resolve_rates(double diameter, double mean_volume) {
   spots.mean_grain_volume = 1.0;  // for grains of this diameter
   spots.injection_rate = outlets.injection(spots, diameter);
+  spots.holds_outflow = outlets.holds_outflow();
   spots.mean_grain_volume = mean_volume;
 }
 

@@ -68,6 +68,9 @@ struct SpotCommand {
   /// of mean volume, d; `mean_volume`: its volume, over that of the largest.
   void resolve(double diameter, double mean_volume = 1.0);
 
+  /// The rates alone, once the outlets know more of the walls. Part of resolve().
+  void resolve_rates(double diameter, double mean_volume);
+
   /// All that decides where grains and spots go, as text, once it is resolved, but for the window. `threads`, `average`
   /// and `peratom` are not in it.
   std::vector<std::pair<std::string, std::string>> settings() const;

@@ -16,9 +16,9 @@ SLIVER = 0.3 * DIAMETER
 BASES = [(8, 4, 4), (25, 4, 4), (25, 4, 3), (10, 10, 2), (4, 4, 4)]
 
 
-def make_base(*lengths, out):
+def make_base(*lengths, out, words=()):
     """Run make_base.py with lengths in metres."""
-    return subprocess.run([sys.executable, DECKS / "silo" / "make_base.py", *map(str, lengths), out],
+    return subprocess.run([sys.executable, DECKS / "silo" / "make_base.py", *map(str, lengths), out, *map(str, words)],
                           capture_output=True, text=True)
 
 
@@ -96,6 +96,26 @@ def test_watertight_around_the_orifice(base):
     assert on_rim > 20
 
 
+@pytest.mark.parametrize("words, centres", [
+    (("--holes", 2), (-12.5, 12.5)),
+    (("--holes", 2, "--open", 1), (-12.5,)),
+    (("--slot", 1), (0,)),
+    (("--slot", 1, "--holes", 3, "--open", 3), (50 / 3,))])
+def test_several_openings_and_slots(words, centres, tmp_path):
+    """The plate is where no opening is, once, and lids are where those are that are not open."""
+    done = make_base(*(value * DIAMETER for value in (25, 8, 4)), SLIVER, out=tmp_path / "base.stl", words=words)
+    assert done.returncode == 0, done.stderr
+    a, b, c = (triangles_of(tmp_path / "base.stl")[:, i, None] for i in range(3))
+    assert (double_area(a[:, 0], b[:, 0], c[:, 0]) > 0).all()
+    points = np.random.default_rng(7).uniform(-1, 1, (4000, 2)) * np.array([25, 8]) * DIAMETER
+    covered = ((double_area(a, b, points) > 0) & (double_area(b, c, points) > 0) & (double_area(c, a, points) > 0)).sum(axis=0)
+    away = points[:, :1] - np.array(centres) * DIAMETER
+    distance = np.abs(away) if "--slot" in words else np.hypot(away, points[:, 1:])
+    distance = distance.min(axis=1)
+    assert (covered[distance < 0.998 * 4 * DIAMETER] == 0).all()
+    assert (covered[distance > 4 * DIAMETER] == 1).all()
+
+
 @pytest.mark.parametrize("lengths, word", [
     ((8, 4, 4.2, 0.3), "half depth"),
     ((3, 4, 3.5, 0.3), "half width"),
@@ -108,4 +128,15 @@ def test_base_that_cannot_be_made(lengths, word, tmp_path):
     done = make_base(*lengths, out=tmp_path / "base.stl")
     assert done.returncode != 0
     assert word in done.stderr
+    assert not (tmp_path / "base.stl").exists()
+
+
+@pytest.mark.parametrize("words, said", [
+    (("--holes", 2, "--open", 3), "open (3)"),
+    (("--holes", 0), "holes (0)"),
+    (("--slot", 1, "--holes", 8), "slot"),
+])
+def test_openings_that_do_not_fit(words, said, tmp_path):
+    done = make_base(25, 8, 4, 0.3, out=tmp_path / "base.stl", words=words)
+    assert done.returncode != 0 and said in done.stderr
     assert not (tmp_path / "base.stl").exists()

@@ -119,7 +119,7 @@ def test_pour_goes_on_as_another_pour(cut_short):
 def test_scene(silo, folder, step):
     scene = json.loads((silo[0] / folder / "scene.json").read_text())
     assert scene == pytest.approx({"program": "LIGGGHTS", "diameter": DIAMETER, "gravity": GRAVITY, "timestep": step * 1e-4 * TAU,
-                                   "half_width_x": WALLS[0], "half_depth_y": WALLS[1], "orifice_radius": 4 * DIAMETER,
+                                   "half_width_x": WALLS[0], "half_depth_y": WALLS[1], "orifice_radius": 4 * DIAMETER, "orifices": 1, "slot": False,
                                    "grains": 600})
 
 
@@ -177,6 +177,17 @@ def test_another_orifice_from_a_drainages_restart(silo, tmp_path):
     (_, before), = read_dump(tmp_path / "drain" / f"drain.{2 * SNAPSHOT}.dump")
     (_, after), = read_dump(tmp_path / "drain" / f"drain.{3 * SNAPSHOT}.dump")
     assert (before["z"] > 0).sum() - (after["z"] > 0).sum() < 60
+
+
+def test_one_opening_after_the_other(silo, tmp_path):
+    """Slots in both halves: the right one first, then the left one, from the restart of that."""
+    scene = {**SCENE, "slot": 1, "holes": 2, "orifice": 3, "out": tmp_path, "every": 1}
+    run_ok("silo", "in.drain", start=silo[0] / "pour" / "packed.restart", time=1.5 * TAU, open=2, **scene)
+    run_ok("silo", "in.drain", start=tmp_path / "drain" / f"drain.{SNAPSHOT}.restart", time=4 * TAU, open=1, **scene)
+    frames = [read_dump(tmp_path / "drain" / f"drain.{tau * SNAPSHOT // 2}.dump")[0][1] for tau in (2, 4)]
+    first, second = [frame["x"][frame["z"] < -0.5 * DIAMETER] for frame in frames]
+    assert len(first) > 10 and (first > 0).all()
+    assert (second < 0).sum() > 10
 
 
 @pytest.mark.skipif(not shutil.which("mpirun"), reason="no mpirun on the PATH")
@@ -281,6 +292,10 @@ BAD_POURS = [
     ({"size": "huge"}, "no size huge"),
     ({"orifice": 9}, "an orifice of 9 d is wider than the base"),
     ({"orifice": 0}, "must be positive"),
+    ({"slot": 2}, "slot is 2"),
+    ({"holes": 0}, "holes (0)"),
+    ({"holes": 2, "open": 3}, "open (3)"),
+    ({"holes": 2}, "an orifice of 8 d is wider than the base"),
     ({"grains": 30000}, "30000 grains pile up to"),
     ({"grains": 0}, "grains (0)"),
     ({"flux": 90000}, "flux of 90000"),

@@ -10,6 +10,8 @@
 #include <sstream>
 
 #include "spot/base/errors.hpp"
+#include "spot/geometry/shaped_container.hpp"
+#include "spot/geometry/silos.hpp"
 #include "spot_command.h"
 
 namespace {
@@ -66,6 +68,16 @@ TEST(OutletCommand, SchedulesOpenAndCloseAnOutlet) {
   EXPECT_EQ(rates.outlet_of_birth(3.0, 0.01), 1u);
 }
 
+TEST(OutletCommand, BirthsFollowTheOutflowThatIsGiven) {
+  const SpotCommand c = command_of(box, "orifice -8 0 0 4 orifice 8 0 0 4 outflow 30 10 schedule 2 5 0");
+  EXPECT_TRUE(c.spots.holds_outflow);
+  EXPECT_NEAR(c.spots.injection_rate.at(0, 0.0), 30.0 / (c.spots.influence * 77), 1e-9);
+  EXPECT_NEAR(c.spots.injection_rate.at(1, 4.0), 10.0 / (c.spots.influence * 77), 1e-9);
+  EXPECT_EQ(c.spots.injection_rate.at(1, 6.0), 0.0);
+  EXPECT_EQ(c.outlets.text_of_rates(), "outflow 30 10; schedule 2 5 0");
+  EXPECT_FALSE(command_of(box, "orifice 0 0 0 4 injection 300").spots.holds_outflow);
+}
+
 TEST(OutletCommand, RatesFollowFromBeverloosLaw) {
   // F = C (6 phi / pi) (D/d - k)^2.5 for round holes, with phi = 0.58; C (6 phi / pi) (L/d - k) (W/d - k)^1.5 for
   // slots.
@@ -99,9 +111,56 @@ TEST(OutletCommand, SaysWhereBeverloosLawIsBeyondItsRange) {
               AllOf(HasSubstr("no outflow"), HasSubstr("not wider than 8")));
 }
 
+/// A cone whose half-angle has the tangent 0.8, 38.66 degrees, below a cylinder; looked at by 'hopper'.
+OutletCommand over_a_cone(const std::string& rates) {
+  const SpotCommand c =
+      command_of("walls add cone z 0 0 4 12 0 10 walls add cylinder z 0 0 12 10 60", "orifice 0 0 0 4 " + rates);
+  OutletCommand outlets = c.outlets;
+  outlets.look_for_hoppers(
+      spot::ShapedContainer(std::get<ShapedWalls>(c.walls).solid({}), outlets.outlets(), {0.25, 2.0}));
+  return outlets;
+}
+
+TEST(OutletCommand, HoppersMultiplyBeverloosLaw) {
+  const double flat = over_a_cone("beverloo 1").predicted_outflow(1.0)[0];
+  const OutletCommand seen = over_a_cone("beverloo 1 hopper 24");
+  const double tan_24 = std::tan(24.0 * 3.14159265358979 / 180.0);
+  EXPECT_NEAR(seen.predicted_outflow(1.0)[0], flat * std::pow(0.8 * tan_24, -0.35), 1e-6);
+  EXPECT_THAT(seen.text_of_hopper(0), AllOf(HasSubstr("half-angle of 38.6598"), HasSubstr("less than 66")));
+  EXPECT_TRUE(seen.doubts(1.0).empty());
+  // A half-angle that is given counts, whatever the walls are.
+  const double tan_30 = std::tan(30.0 * 3.14159265358979 / 180.0);
+  EXPECT_NEAR(command_of(box, "orifice 0 0 0 4 beverloo 1 hopper 24 30").outlets.predicted_outflow(1.0)[0],
+              flat * std::pow(tan_30 * tan_24, -0.35), 1e-6);
+  EXPECT_THAT(over_a_cone("beverloo 1 hopper 24").text_of_rates(), HasSubstr("hopper 24"));
+}
+
+TEST(OutletCommand, SaysWhereTheFactorOfHoppersIsBeyondItsRange) {
+  EXPECT_THAT(over_a_cone("beverloo 1").doubts(1.0).at(0),
+              AllOf(HasSubstr("38.6598083 degrees"), HasSubstr("flat bases")));
+  EXPECT_THAT(over_a_cone("beverloo 1 hopper 55").doubts(1.0).at(0), HasSubstr("from 35 on"));
+  EXPECT_EQ(over_a_cone("beverloo 1 hopper 55").predicted_outflow(1.0),
+            over_a_cone("beverloo 1").predicted_outflow(1.0));
+  EXPECT_THAT(over_a_cone("beverloo 1 hopper 24 5").doubts(1.0).at(0), HasSubstr("below 10"));
+  EXPECT_THAT(command_of(box, "slot 0 0 0 6 8 beverloo 1 hopper 24 30").outlets.doubts(1.0).at(0), HasSubstr("wedges"));
+  EXPECT_TRUE(over_a_cone("injection 300").doubts(1.0).empty());
+}
+
 TEST(OutletCommand, MistakesAreNamed) {
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 hopper 24"), HasSubstr("'hopper' goes with 'beverloo'"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 beverloo 1 hopper 90"), HasSubstr("angle of repose must be below 90"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 beverloo 1 hopper 24 0"), HasSubstr("half-angle must be positive"));
+  OutletCommand flat = command_of(box, "orifice 0 0 0 4 beverloo 1 hopper 24").outlets;
+  EXPECT_THROW(flat.look_for_hoppers(*spot::box_silo(-20, 20, -5, 5, flat.outlets(), {0.25, 2.0})),
+               spot::InvalidParameter);
   EXPECT_THAT(error_of(box, "injection 300"), AllOf(HasSubstr("'orifice' is missing"), HasSubstr("'slot")));
-  EXPECT_THAT(error_of(box, "orifice 0 0 0 4"), AllOf(HasSubstr("'injection' is missing"), HasSubstr("'beverloo g'")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4"),
+              AllOf(HasSubstr("'outflow' is missing"), HasSubstr("'injection'"), HasSubstr("'beverloo g'")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 outflow 30"), HasSubstr("only one of"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 4 outflow 30 beverloo 1"), HasSubstr("only one of"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow 30 2"), HasSubstr("'outflow' has 2 rates but there is 1"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow -1"), HasSubstr("zero or positive"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow 0"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 beverloo 1"), HasSubstr("only one of"));
   EXPECT_THAT(error_of(box, "orifice -5 0 0 3 orifice 5 0 0 3 injection 300"), HasSubstr("1 rate but there are 2"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 300 20"), HasSubstr("2 rates but there is 1"));

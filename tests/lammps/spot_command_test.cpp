@@ -388,7 +388,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "walls",     "add",         "cut",
                                                "block",     "cone",        "z",
                                                "plane",     "sphere",      "NULL",
-                                               "recirculate"};
+                                               "recirculate", "hopper", "v_open", "scene"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -465,8 +465,8 @@ TEST(SpotDocumentation, ExamplesAreValid) {
 
 TEST(SpotDocumentation, SaysWhichKeywordsAreRequired) {
   EXPECT_THAT(section("Syntax", "Examples"),
-              HasSubstr("*speed*, one of *orifice* and *slot*, one of *injection* and *beverloo*, and one of *box*, "
-                        "*cylinder*, *region* and\n  *walls* are required"));
+              HasSubstr("*speed*, one of *orifice* and *slot*, one of *outflow*, *injection* and *beverloo*, and one "
+                        "of *box*,\n  *cylinder*, *region* and *walls* are required"));
   for (const std::string required : {"box -5 5 -4 4", "orifice 1 2 3 3.5", "speed 3.2", "injection 388"}) {
     std::string without = complete;
     without.erase(without.find(required), required.size());

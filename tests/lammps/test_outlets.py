@@ -80,6 +80,25 @@ def test_counts_of_outlets_go_on_from_a_restart_file(tmp_path):
     assert "injection was 60 60; schedule 1 0 0 2 1" in error and "give the fix another ID" in error
 
 
+@needs_mpirun
+def test_births_follow_the_outflow_on_ranks_and_over_restarts(tmp_path):
+    one, two = tmp_path / "one", tmp_path / "two"
+    for folder in (one, two):
+        write_wide(folder)
+    command = fix(TWO, rates="outflow 12 6", more="volume 77")
+    out = thermo(run_ok(deck(command, run="run 250"), one))
+    run_ok(deck(command, run="run 120\nwrite_restart part.restart"), two, launcher=on_ranks(2))
+    rest = deck(command, run="run 130").replace("read_data packing.data", "read_restart part.restart")
+    run_ok(rest, two, launcher=on_ranks(3))
+    (_, whole), (_, parts) = read_dump(one / "grains.dump")[-1], read_dump(two / "grains.dump")[-1]
+    assert all((whole[column] == parts[column]).all() for column in whole)
+    last, before = out["Step"] == 250, out["Step"] == 100
+    for outlet, asked in (("f_drain[9]", 12), ("f_drain[10]", 6)):
+        found = (out[outlet][last] - out[outlet][before])[0] / 15
+        # Births are at random, 120 and 230 of them: by 9 and 6 % more or less.
+        assert abs(found - asked) < 0.1 * asked, f"{outlet}: {found} a unit of time, asked for {asked}"
+
+
 def test_beverloos_law_is_told(tmp_path):
     out = run_ok(deck(FIX.replace("injection 100", "beverloo 1").replace(OPENING, "orifice 0 0 0 2.8"), run="run 1"), tmp_path)
     # 0.58 * 0.58 * 6 / pi * (5.6 - 1.4)^2.5

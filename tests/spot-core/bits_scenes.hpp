@@ -47,6 +47,7 @@ class PinnedScenes {
     for (const bool time_ordered : {false, true}) {
       add(plain(time_ordered, "all-ingredients"), all_ingredients);
       add(plain(time_ordered, "spread"), spreading);
+      add(plain(time_ordered, "outflow"), holding_outflow);
     }
   }
   const std::vector<PinnedScene>& all() const { return all_; }
@@ -125,6 +126,12 @@ class PinnedScenes {
     scene.spots.step_width = spot::step_width_for(1.4, scene.spots.step_height);
     scene.spots.spread = 0.6;
     scene.spots.wall_shear = 0.7;
+  }
+
+  /// So long that births follow it a few times, from what has left before, too.
+  static void holding_outflow(PinnedScene& scene) {
+    spreading(scene);
+    scene.spots.holds_outflow = true;
   }
 
   static void let_come_and_go(PinnedScene& scene) {

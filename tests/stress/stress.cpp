@@ -13,27 +13,33 @@ constexpr double deck_radius = 3.53;
 Scene::Scene() {
   spots.profile = spot::InfluenceProfile::parabolic;
   spots.radius = deck_radius;
-  spots.influence = 2.5e-3;
+  spots.influence = 1.5e-3;
   spots.speed = 2.5;
   spots.dilation = 0.03;
-  spots.injection_rate = 368.0;
+  spots.injection_rate = 613.0;
   spots.fixed_volume = 77.0;
-  // The deck's 0.602 is for packings that were poured; this one has 0.54 at rest, to the smallest spots 0.503.
+  // The deck's 0.62 is for packings that were poured; this one has 0.54 at rest, to the smallest spots 0.503.
   spots.critical_fraction = 0.5;
   spots.exchange_length = 0.5;
   spots.dilatancy = 0.15;
-  spots.surface_exponent = 3.0;
+  spots.spread = 0.6;
+  spots.wall_shear = 0.7;
+  spots.surface_exponent = 4.0;
+  spots.nonaffine = 0.15;
+  spots.nonaffine_length = 0.5;
   spots.seed = 1;
   set_step_height(1.2);
   relaxation.tolerance = 1.7e-3;
   relaxation.momentum = 0.67;
   relaxation.contact_overlap = 1.5e-3;
+  relaxation.closing_gap = 0.004;
+  relaxation.closing_share = 0.15;
   fill(14.0);
 }
 
 void Scene::set_step_height(double height) {
   spots.step_height = height;
-  spots.step_width = spot::step_width_for(1.45, height);
+  spots.step_width = spot::step_width_for(1.47, height);
 }
 
 void Scene::set_no_fixed_volume() {

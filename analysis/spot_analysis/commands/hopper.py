@@ -2,7 +2,7 @@
 """Compare how grains drain from a round hopper: DEM and runs of the spot model, quantity by quantity."""
 
 from ..reading.axial_scene import load_axial_scene
-from ..report import plots_axial
+from ..report import plots_fall
 from ..statistics import axial_flow
 from . import command_line, quantities
 
@@ -12,18 +12,9 @@ def _measure(folder, start, end):
     return axial_flow.measure(command_line.frames_of_equal_grains(folder, scene), scene, start, end)
 
 
-def compare():
-    options = quantities.parse_arguments(__doc__, "Lengths are in d, times in tau.", end=50.0, plot="draws the profiles of the fall")
-    reference, *runs = [quantities.statistics(run, options, "hopper", _measure) for run in options.runs]
-    quantities.keep(reference, options)
-    if not runs:
-        return
-    spot = quantities.pooled(runs)
-    quantities.print_table(reference, spot, options)
-    if options.plot:
-        plots_axial.save_profiles(options.plot, reference, spot)
-        print(f"{options.plot}: profiles of the fall")
+def _draw(path, reference, spot):
+    plots_fall.save_profiles(path, reference, spot, axial_flow.HEIGHTS, "r")
 
 
 def main():
-    command_line.run(compare)
+    command_line.run(lambda: quantities.compare_profiles(__doc__, 50.0, "hopper", _measure, _draw))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Compare quantities, name -> [value, error], of a reference with those of several runs: what the commands for hoppers and
-mixtures share."""
+"""Compare quantities, name -> [value, error], of a reference with those of several runs: what the commands for hoppers, boxes
+and mixtures share."""
 
 import argparse
 import json
@@ -81,3 +81,21 @@ def _row(name, reference, spot):
     words = [f"{value:.4g} +- {error:.2g}" if math.isfinite(value) else "unknown" for value, error in (reference, spot)]
     known = math.isfinite(reference[0]) and math.isfinite(spot[0]) and reference[0] != 0
     return "| " + " | ".join([name, *words, f"{100 * (spot[0] / reference[0] - 1):+.1f} %" if known else ""]) + " |"
+
+
+def compare_profiles(description, end, what, measure, draw):
+    """What a command does whose plot has profiles of the fall.
+
+    description, end : see parse_arguments; what, measure : see statistics
+    draw(path, reference, spot) : writes the plot
+    """
+    options = parse_arguments(description, "Lengths are in d, times in tau.", end=end, plot="draws the profiles of the fall")
+    reference, *runs = [statistics(run, options, what, measure) for run in options.runs]
+    keep(reference, options)
+    if not runs:
+        return
+    spot = pooled(runs)
+    print_table(reference, spot, options)
+    if options.plot:
+        draw(options.plot, reference, spot)
+        print(f"{options.plot}: profiles of the fall")

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.errors import SceneError
+
 GRAIN_RADIUS = 0.5
 
 
@@ -18,17 +20,32 @@ def nearest_image(differences, period):
     return shortened
 
 
+def check_orifices(orifices, slot):
+    """Raises SceneError for what a scene file cannot say of them."""
+    if isinstance(orifices, bool) or not isinstance(orifices, int) or orifices < 1:
+        raise SceneError(f"scene: 'orifices' must be a whole number from 1 on, not {orifices!r}")
+    if not isinstance(slot, bool):
+        raise SceneError(f"scene: 'slot' must be true or false, not {slot!r}")
+
+
 @dataclass(frozen=True)
 class Container:
-    """Walls x = +-half_width and y = +-half_depth, base z = 0 with a circular orifice at the origin.
+    """Walls x = +-half_width and y = +-half_depth, base z = 0 with a circular orifice at the origin, or with several.
 
     periodic : there are no walls across y, along which the silo repeats every 2 half_depth. Positions may then be in any period.
+    orifices : how many, in the middles of equal parts of the base along x; only ``middles`` and pictures know of more than one
     """
 
     half_width: float
     half_depth: float
     orifice_radius: float
     periodic: bool = False
+    orifices: int = 1
+
+    @property
+    def middles(self):
+        """x of the orifices' middles."""
+        return tuple((2 * k + 1 - self.orifices) * self.half_width / self.orifices for k in range(self.orifices))
 
     @property
     def period(self):

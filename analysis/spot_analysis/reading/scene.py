@@ -9,7 +9,7 @@ from dataclasses import MISSING, asdict, dataclass, fields
 import numpy as np
 
 from ..base.errors import SceneError
-from .container import Container
+from .container import Container, check_orifices
 from .json_object import read_object
 
 FILE_NAME = "scene.json"
@@ -21,17 +21,15 @@ LEAST_PERIOD = 12.0  # d; twice as far as pairs of grains are looked for
 class Scene:
     """Units and geometry, in the units of the dump.
 
-    diameter : grain diameter d
-    gravity : acceleration g
-    timestep : time of one step of the dumps' TIMESTEP
+    diameter, gravity, timestep : grain diameter d; acceleration g; time of one step of the dumps' TIMESTEP
     half_width_x, half_depth_y : walls at x = axis_x +- half_width_x and y = axis_y +- half_depth_y
     periodic_y : there are no walls across y, along which the silo repeats every 2 half_depth_y; a scene file says so by
         half_period_y in the place of half_depth_y
-    orifice_radius : of the circular orifice on the axis
+    orifice_radius : of the circular orifice on the axis, or half of a slot's width
+    orifices, slot : how many, in the middles of equal parts of the base along x; whether they go from front to back
     opening_time : when the orifice opens, counted from TIMESTEP 0
     axis_x, axis_y, base_z : where the axis of silo and orifice meets the base
-    program : what made the dumps
-    grains : how many there were at the start, None where it was not said
+    program, grains : what made the dumps; how many grains there were at the start, None where it was not said
     """
 
     diameter: float
@@ -47,6 +45,8 @@ class Scene:
     program: str = "unknown"
     grains: int = None
     periodic_y: bool = False
+    orifices: int = 1
+    slot: bool = False
 
     def __post_init__(self):
         for key in NUMBERS:
@@ -57,10 +57,11 @@ class Scene:
                 raise SceneError(f"scene: '{key}' must be a number, not {getattr(self, key)!r}")
         if not isinstance(self.program, str):
             raise SceneError(f"scene: 'program' must be a text, not {self.program!r}")
+        check_orifices(self.orifices, self.slot)
         if self.periodic_y and 2 * self.half_depth_y < LEAST_PERIOD * self.diameter:
             raise SceneError(f"scene: '{PERIOD_KEY}' is {self.half_depth_y:g}, half of a period of "
-                             f"{2 * self.half_depth_y / self.diameter:g} d, but must be half of {LEAST_PERIOD:g} d or more: "
-                             f"no pair of grains may be counted twice")
+                             f"{2 * self.half_depth_y / self.diameter:g} d, but must be half of {LEAST_PERIOD:g} d or more: no pair "
+                             "of grains may be counted twice")
 
     @property
     def tau(self):
@@ -78,7 +79,7 @@ class Scene:
     def container(self):
         """The container in units of d."""
         return Container(self.half_width_x / self.diameter, self.half_depth_y / self.diameter,
-                         self.orifice_radius / self.diameter, self.periodic_y)
+                         self.orifice_radius / self.diameter, self.periodic_y, self.orifices)
 
     def as_dict(self):
         """key -> value, as in a scene file."""

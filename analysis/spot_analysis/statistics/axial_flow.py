@@ -16,7 +16,9 @@ CORE = 8.0  # d, radius within which the packing fraction is counted
 
 
 @dataclass(frozen=True)
-class _Snapshot:
+class Snapshot:
+    """In d and tau."""
+
     time: float
     ids: np.ndarray
     positions: np.ndarray
@@ -39,22 +41,23 @@ def measure(frames, scene, start, end):
 
     Raises ValueError if fewer than three snapshots lie in the interval.
     """
-    snapshots = [_Snapshot(frame.timestep * scene.timestep / scene.tau, frame.ids, frame.positions / scene.diameter)
+    snapshots = [Snapshot(frame.timestep * scene.timestep / scene.tau, frame.ids, frame.positions / scene.diameter)
                  for frame in frames]
     inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
     if len(inside) < 3:
         raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
     pairs = list(zip(inside, inside[1:]))
-    found = {"outflow": mean_of([_left(before, after) / (after.time - before.time) for before, after in pairs])}
+    found = {"outflow": mean_of([left(before, after) / (after.time - before.time) for before, after in pairs])}
     for height in HEIGHTS:
         found.update(_profile(pairs, height, scene.radius_at(height)))
     found["packing_fraction"] = mean_of([_packing_fraction(s, scene) for s in inside])
     for level in LEVELS:
-        found[f"residence_median_{level:g}d"] = mean_of(_residence(snapshots, level, start, end))
+        found[f"residence_median_{level:g}d"] = mean_of(residence_medians(snapshots, level, start, end))
     return found
 
 
-def _left(before, after):
+def left(before, after):
+    """How many grains have gone through the outlet."""
     return np.count_nonzero(before.positions[:, 2] > 0) - np.count_nonzero(after.positions[:, 2] > 0)
 
 
@@ -62,7 +65,7 @@ def _profile(pairs, height, radius):
     """Rate of fall in rings around the axis, at a height, and that at the wall over that on the axis (mass flow index)."""
     rings = int(radius / RING + 1e-6)
     edges = np.append(RING * np.arange(rings), radius)  # the last is wider, up to the wall
-    speeds = np.array([_speeds(before, after, height, edges) for before, after in pairs])
+    speeds = np.array([speeds_at(before, after, height, edges, np.hypot) for before, after in pairs])
     name = f"speed_{height:g}d"
     found = {f"{name}_r{(low + high) / 2:.1f}d": mean_of(speeds[:, k]) for k, (low, high) in enumerate(zip(edges, edges[1:]))}
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -70,16 +73,20 @@ def _profile(pairs, height, radius):
     return found
 
 
-def _speeds(before, after, height, edges):
-    _, first, second = np.intersect1d(before.ids, after.ids, assume_unique=True, return_indices=True)
-    middle = (before.positions[first] + after.positions[second]) / 2
-    fall = (before.positions[first, 2] - after.positions[second, 2]) / (after.time - before.time)
+def speeds_at(before, after, height, edges, place):
+    """Mean fall (d/tau) of what is at a height, in bins of place(x, y); not a number in those without grains."""
+    middle, fall = falls(before, after)
     slab = np.abs(middle[:, 2] - height) < HALF_SLAB
-    ring = np.digitize(np.hypot(middle[slab, 0], middle[slab, 1]), edges) - 1
-    known = (ring >= 0) & (ring < len(edges) - 1)
-    count = np.bincount(ring[known], minlength=len(edges) - 1)
+    at = place(middle[slab, 0], middle[slab, 1])
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.bincount(ring[known], weights=fall[slab][known], minlength=len(edges) - 1) / count
+        return np.histogram(at, edges, weights=fall[slab] / (after.time - before.time))[0] / np.histogram(at, edges)[0]
+
+
+def falls(before, after):
+    """Of grains in both snapshots: where they were between, and how far they have come down; in d."""
+    _, first, second = np.intersect1d(before.ids, after.ids, assume_unique=True, return_indices=True)
+    return ((before.positions[first] + after.positions[second]) / 2,
+            before.positions[first, 2] - after.positions[second, 2])
 
 
 def _packing_fraction(snapshot, scene):
@@ -90,7 +97,7 @@ def _packing_fraction(snapshot, scene):
     return count * np.pi / 6 / (np.pi * CORE ** 2 * 6.0)
 
 
-def _residence(snapshots, level, start, end):
+def residence_medians(snapshots, level, start, end):
     """Medians, for each snapshot in the interval, of the times that grains which leave then have taken from a level."""
     passed, medians = {}, []
     for before, after in zip(snapshots, snapshots[1:]):

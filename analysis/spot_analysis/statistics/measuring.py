@@ -14,7 +14,7 @@ from .front_layer import FrontLayer
 from .history import History
 from .region import structure_region
 from .run_statistics import CONCEPTS, RunStatistics
-from .scene_fit import require_diameter, warn_of_misfit
+from .scene_fit import require_diameter, require_one_round_orifice, warn_of_misfit
 from .snapshot import LAG_TAU, TIME_TOLERANCE, Snapshot
 
 PROFILE_HEIGHTS = np.array([5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0, 70.0])
@@ -30,10 +30,10 @@ def measure_dumps(source, scene, label="dumps", provenance=None, warn=print, con
 
     Snapshots before the opening of the orifice are left out. Raises DumpError, SceneError.
     """
-    files = len(find_dumps(source))
+    require_one_round_orifice(scene)
+    files, early = len(find_dumps(source)), 0
     progress = Progress(label)
     recorder = _Recorder(scene, concepts)
-    early = 0
     for number, frame in enumerate(read_frames(source, extra=("radius",), warn=warn), 1):
         if scene.time(frame.timestep) < -TIME_TOLERANCE:
             early += 1

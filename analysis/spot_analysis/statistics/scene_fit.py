@@ -36,3 +36,9 @@ def warn_of_misfit(source, run, lowest, warn):
     if BASE_GAP < lowest < math.inf:
         warn(f"{source}: the lowest grain of the first snapshot lies {lowest:g} d above the base of the scene, from which all "
              "heights count; 'base_z' says where the base is")
+
+
+def require_one_round_orifice(scene):
+    """Raises SceneError for a silo that only box.py measures."""
+    if scene.orifices > 1 or scene.slot:
+        raise SceneError("scene: this measures a silo with one round orifice; analysis/box.py takes several, and slots")

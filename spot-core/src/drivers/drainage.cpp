@@ -104,7 +104,11 @@ MovesReceived Drainage::take_moves_received() {
   return received;
 }
 
-void Drainage::add_drained(const std::vector<Grain>& grains) {
+void Drainage::add_drained(const std::vector<Grain>& grains, Spots& spots) {
+  const Outlets& outlets = container().outlets();
+  for (const Grain& grain : grains)
+    spots.count_drained(static_cast<std::size_t>(&container().nearest_outlet(grain.position) - &outlets[0]),
+                        volume_parts(diameter_, radius_in(diameter_, grain)));
   drained_.insert(drained_.end(), grains.begin(), grains.end());
   counters_.drained += static_cast<std::int64_t>(grains.size());
 }

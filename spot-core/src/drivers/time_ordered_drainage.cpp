@@ -147,7 +147,7 @@ void TimeOrderedDrainage::take_out_drained() {
   std::vector<Grain> drained;
   for (const std::uint32_t i : near_)
     if (packing_.z()[i] < limits().outlet) drained.push_back(packing_.remove(i));
-  add_drained(drained);
+  add_drained(drained, spots_);
   if (relaxes_every_move()) checks().require_left_through_orifice(drained);
 }
 

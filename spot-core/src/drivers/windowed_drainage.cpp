@@ -109,6 +109,7 @@ void WindowedDrainage::advance_to(double time) {
   while (static_cast<double>(windows_ + 1) * window_ <= end) {
     const double now = static_cast<double>(windows_) * window_, until = static_cast<double>(++windows_) * window_;
     spots_.set_relative_speeds(now, *communicator_, *workers_);
+    spots_.follow_outflow(now, *communicator_);
     spots_.give_birth(until, container(), [this](const Spot& spot) { return here(spot); });
     spots_.update_surface(now, visit_positions(), *communicator_);
     step_to(until);
@@ -189,7 +190,7 @@ std::size_t WindowedDrainage::memory() const {
 void WindowedDrainage::take_out_drained() {
   std::vector<Grain> drained;
   packing_.take_out_below(limits().outlet, drained);
-  add_drained(drained);
+  add_drained(drained, spots_);
   checks().require_left_through_orifice(drained);
 }
 

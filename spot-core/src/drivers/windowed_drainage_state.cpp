@@ -31,7 +31,7 @@ std::vector<Bytes> WindowedDrainage::read(const std::vector<Bytes>& saved) {
       counters.volume_left += read.volume_left;
       counters.drained += read.drained;
     }
-    spots_.restore(reader);
+    spots_.restore(reader, communicator_->rank() == 0);
     packings.push_back(reader.take_all<char>());
   }
   set_counters(counters);

@@ -28,6 +28,22 @@ double RateSchedule::next_change(double time) const {
   return next == steps_.end() ? never : next->time;
 }
 
+double RateSchedule::births(double from, double until) const {
+  double births = 0.0;
+  while (from < until) {
+    const double change = std::min(next_change(from), until);
+    births += at(from) * (change - from);
+    from = change;
+  }
+  return births;
+}
+
+RateSchedule RateSchedule::times(double factor) const {
+  std::vector<RateStep> steps = steps_;
+  for (RateStep& step : steps) step.rate *= factor;
+  return RateSchedule(std::move(steps));
+}
+
 void RateSchedule::validate(std::size_t outlet) const {
   if (steps_.empty()) throw InvalidParameter(message("outlet ", outlet, " has no spot injection rate"));
   if (steps_.front().time != 0.0)
@@ -94,12 +110,14 @@ std::size_t Injection::outlet_of_birth(double time, double uniform) const {
 }
 
 Injection& Injection::operator*=(double factor) {
-  for (RateSchedule& outlet : outlets_) {
-    std::vector<RateStep> steps = outlet.steps();
-    for (RateStep& step : steps) step.rate *= factor;
-    outlet = RateSchedule(std::move(steps));
-  }
+  for (RateSchedule& outlet : outlets_) outlet = outlet.times(factor);
   return *this;
+}
+
+Injection Injection::times(const std::vector<double>& factors) const {
+  std::vector<RateSchedule> outlets;
+  for (std::size_t k = 0; k < outlets_.size(); ++k) outlets.push_back(outlets_[k].times(factors[k]));
+  return Injection(std::move(outlets));
 }
 
 void Injection::validate() const {

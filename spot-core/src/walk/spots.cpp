@@ -12,6 +12,7 @@ namespace spot {
 
 Spots::Spots(const SpotParameters& parameters, const Container& container, double diameter)
     : walk_(parameters, container),
+      outflow_(parameters, container, diameter),
       next_birth_(walk_.time_of_birth(0, 0.0)),
       dilates_(parameters.dilation > 0.0),
       dilation_(parameters, container, diameter),
@@ -20,7 +21,7 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       flow_(parameters, container, diameter),
       surface_(parameters, container, diameter),
       surface_interval_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
-      setting_interval_(dilates_ || shears_ || surface_.needed()
+      setting_interval_(dilates_ || shears_ || surface_.needed() || outflow_.on()
                             ? calibration::climb_between_settings * parameters.radius / parameters.speed
                             : 0.0) {}
 
@@ -119,6 +120,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container, co
       set_relative_speeds(next_setting(), alone, one_thread);
       if (settings_ > 0) update_flow(setting_interval_, alone);
       update_surface(next_setting(), visit_grains, alone);
+      follow_outflow(next_setting(), alone);
       ++settings_;
     } else if (event <= time && event == next_birth_) {
       bear_next(container, [](const Spot&) { return true; });
@@ -171,6 +173,10 @@ void Spots::update_surface(double now, const VisitGrains& visit_grains, Communic
   surface_.clear();
   visit_grains([this](const Vector3& position) { surface_.add(position); });
   surface_.gather(communicator);
+}
+
+void Spots::follow_outflow(double now, Communicator& communicator) {
+  if (outflow_.update(now, communicator)) walk_.set_rates(outflow_.rates());
 }
 
 void Spots::replace_container(const Container& container) {
@@ -227,9 +233,10 @@ void Spots::save(Bytes& bytes) const {
   dilation_.save(bytes);
   flow_.save(bytes);
   surface_.save(bytes);
+  outflow_.save(bytes);
 }
 
-void Spots::restore(ByteReader& saved) {
+void Spots::restore(ByteReader& saved, bool counts) {
   born_ = saved.take<std::int64_t>();
   next_birth_ = saved.take<double>();
   take_in(take_spots(saved));
@@ -238,6 +245,8 @@ void Spots::restore(ByteReader& saved) {
   dilation_.restore(saved);
   flow_.restore(saved);
   surface_.restore(saved);
+  outflow_.restore(saved, counts);
+  walk_.set_rates(outflow_.rates());
 }
 
 std::size_t Spots::memory() const {

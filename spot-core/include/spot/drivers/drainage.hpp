@@ -128,8 +128,8 @@ class Drainage {
   }
   /// Goes on counting from a saved state.
   void set_counters(const Counters& counters) { counters_ = counters; }
-  /// Grains have left below the outlet.
-  void add_drained(const std::vector<Grain>& grains);
+  /// Grains have left below the outlet, which the driver's spots hear of.
+  void add_drained(const std::vector<Grain>& grains, Spots& spots);
 
  private:
   /// Carries out what change_grains() has checked; returns the largest overlap of a grain that came, as it came.

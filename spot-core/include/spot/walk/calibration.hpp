@@ -33,6 +33,9 @@ constexpr double climb_between_surfaces = 0.5;
 /// the flow of a silo changes its shape.
 constexpr double climb_of_flow_memory = 10.0;
 
+/// Births follow the outflow by half of their rate at most. A choice: DEM's narrowest orifice, 6.5 d wide, needs 1.07.
+constexpr double largest_outflow_correction = 0.5;
+
 /// Of 2010's rule for the free surface. It has 3; with more than ten times that, spots only climb the steepest way.
 constexpr double largest_surface_exponent = 32.0;
 

@@ -22,7 +22,10 @@ class RateSchedule {
   double at(double time) const;
   /// When it changes next after a time; infinite if it does not.
   double next_change(double time) const;
+  /// The integral of the rate: births that are expected between two times.
+  double births(double from, double until) const;
   const std::vector<RateStep>& steps() const { return steps_; }
+  RateSchedule times(double factor) const;
 
   /// Throws InvalidParameter, naming the outlet, unless the first step is at time 0, times increase, and all are finite
   /// and no rate below 0.
@@ -54,8 +57,16 @@ class Injection {
   /// At which outlet a birth at this time is, for a uniform number from 0 to 1.
   std::size_t outlet_of_birth(double time, double uniform) const;
 
+  /// Of one outlet: the rate at a time, and the births expected between two.
+  double at(std::size_t outlet, double time) const { return outlets_[outlet].at(time); }
+  double expected_births(std::size_t outlet, double from, double until) const {
+    return outlets_[outlet].births(from, until);
+  }
+
   /// All rates times this.
   Injection& operator*=(double factor);
+  /// The rates of each outlet times a factor.
+  Injection times(const std::vector<double>& factors) const;
 
   /// Throws InvalidParameter, naming the number, as RateSchedule does, or if there are no births at all.
   void validate() const;

@@ -18,6 +18,8 @@ struct SpotParameters {
   double step_height = 0.0;  ///< dz: and by dz upwards (length)
   double speed = 0.0;        ///< v_s: mean drift speed of a spot (length / time)
   Injection injection_rate = 0.0;  ///< nu_s: births per time at each outlet (1 / time)
+  /// Births follow what leaves (OutflowControl), so that it is nu_s times the volume of a newborn spot.
+  bool holds_outflow = false;
   /// N: a spot always carries the free volume of w N grains of mean volume, whatever volume it encloses, of which each
   /// grain's counts by its share of the influence (2010's fixed-volume weighting).
   /// 0: every grain it encloses moves by -w dr (2006).

@@ -57,6 +57,9 @@ class SpotWalk {
   /// cell then; the middle of the step need not be.
   Move step(Spot& spot, const Container& container, const FreeSurface& surface, const FlowField& flow) const;
 
+  /// From now on spots are born at these rates.
+  void set_rates(const Injection& rates) { parameters_.injection_rate = rates; }
+
  private:
   void draw_next_step(Spot& spot) const;
   Vector3 drift(const Vector3& place, const FreeSurface& surface, const FlowField& flow) const;

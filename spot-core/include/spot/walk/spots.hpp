@@ -14,15 +14,15 @@
 #include "spot/walk/dilation_field.hpp"
 #include "spot/walk/flow_field.hpp"
 #include "spot/walk/free_surface.hpp"
+#include "spot/walk/outflow_control.hpp"
 #include "spot/walk/spot_walk.hpp"
 
 namespace spot {
 
 /// The live spots: births, relative speeds, steps and removals, for all drivers.
 ///
-/// A driver asks either for one step after the other, in the order of time, or for all steps until the end of a window,
-/// spot by spot in the order of birth. The first is for one rank; the second is for any number of them, of which each
-/// has spots of its own.
+/// A driver asks either for one step after the other, in the order of time and on one rank, or for all steps until the
+/// end of a window, spot by spot in the order of birth, on any number of ranks, each with spots of its own.
 class Spots {
  public:
   /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
@@ -46,8 +46,7 @@ class Spots {
   /// Births up to and including `until`: every rank sees all of them, and keeps those that belong to it.
   void give_birth(double until, const Container& container, const Belongs& here);
 
-  /// Steps up to and including `until`. Then calls visit(spot, moves), of one spot after the other, for those that have
-  /// made any.
+  /// Steps up to and including `until`; then visit(spot, moves), one spot after the other, of those that made any.
   void step_until(double until, const Container& container, Workers& workers,
                   const std::function<void(const Spot&, const std::vector<Move>&)>& visit);
 
@@ -59,7 +58,7 @@ class Spots {
   /// each move once, in the order of a spot's moves. `enclosed`: grain volume (1024 = grain_volume).
   Carried carry(const Move& move, int enclosed, const Container& container);
 
-  // The same in two parts, of which several threads may do the first, for different spots.
+  // The same in two parts. Several threads may do the first, for different spots.
   Carried exchange(const Move& move, int enclosed, const Container& container);
   void add_to_flow(const Move& move, double carried) {
     if (shears_) flow_.add(move, carried);
@@ -71,6 +70,11 @@ class Spots {
   /// Collective. Spots learn where the free surface is now, if they have to know: once in each interval in which a spot
   /// at v_s climbs calibration::climb_between_surfaces, whatever the times of the calls in it after the first.
   void update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator);
+
+  /// A grain of this rank, of this volume (1024 = grain_volume), has left through an outlet.
+  void count_drained(std::size_t outlet, std::int64_t volume) { outflow_.count(outlet, volume); }
+  /// Collective. Births follow what has left until now.
+  void follow_outflow(double now, Communicator& communicator);
 
   /// There is nothing left above the spot. One that is gone already may be named again.
   void remove(std::int64_t spot);
@@ -87,8 +91,9 @@ class Spots {
   void replace_container(const Container& container);
 
   void save(Bytes& bytes) const;
-  /// Takes in what save() appended, on each of several ranks maybe. Throws InvalidState if it is damaged.
-  void restore(ByteReader& saved);
+  /// Takes in what save() appended, on each of several ranks maybe, of which one `counts` what had left. Throws
+  /// InvalidState if it is damaged.
+  void restore(ByteReader& saved, bool counts = true);
 
   std::size_t memory() const;
 
@@ -123,6 +128,7 @@ class Spots {
   std::vector<Place> places_;  // in order of birth
   std::size_t removed_ = 0;
   std::vector<Stepped> stepped_;  // kept to save allocations
+  OutflowControl outflow_;
   double next_birth_;
   std::int64_t born_ = 0;
   bool dilates_;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "spot/base/bytes.hpp"
+#include "spot/geometry/container.hpp"
+#include "spot/parallel/communicator.hpp"
+#include "spot/walk/parameters.hpp"
+
+namespace spot {
+
+/// Keeps what leaves through each outlet at what is asked for, F(t) = nu_s(t) times the volume of a newborn spot.
+///
+/// Left alone, less leaves: grains on the base beside an outlet cannot go down where a spot would have them, so a part
+/// of its volume is lost, some 2 % at an outlet 8 grains wide and 6 % at one of 6.5. What is missing, M, grows by
+/// F - F_found, and spots are born at
+///
+///     nu_s (1 + M / (F T)),  but at 1 / 2 to 3 / 2 of nu_s.
+///
+/// So M goes to a constant within T, and the outflow to F, with no overshoot. A spot delivers its volume on its way
+/// through the outlet, so F is that of R_s / v_s before. T is calibration::climb_of_flow_memory R_s / v_s.
+class OutflowControl {
+ public:
+  /// `diameter`: the reference diameter.
+  OutflowControl(const SpotParameters& parameters, const Container& container, double diameter);
+
+  bool on() const { return on_; }
+
+  /// A grain of this volume (1024 = grain_volume), which this rank had, has left through an outlet.
+  void count(std::size_t outlet, std::int64_t volume) { counted_[outlet] += volume; }
+
+  /// Collective. Once in each interval in which a spot at v_s climbs calibration::climb_between_surfaces R_s, whatever
+  /// the times of the calls in it after the first: finds the factors anew. Says whether it has.
+  bool update(double now, Communicator& communicator);
+
+  /// On nu_s, an outlet each.
+  std::vector<double> factors() const;
+  /// Of births, from now on.
+  Injection rates() const { return births_.times(factors()); }
+
+  void save(Bytes& bytes) const;
+  /// Takes in what save() appended, on each of several ranks maybe, of which one counts what was counted. Throws
+  /// InvalidState if it is damaged.
+  void restore(ByteReader& saved, bool counts);
+
+ private:
+  double asked(std::size_t outlet, double from, double until) const;
+
+  bool on_;
+  Injection births_;
+  double volume_of_birth_;  // 1024 = grain_volume
+  double delay_, memory_time_, interval_;
+  std::int64_t updates_ = 0;           // intervals until the next one
+  double updated_ = 0.0;               // when it was last
+  std::vector<std::int64_t> counted_;  // by this rank, since then
+  std::vector<double> missing_;        // M
+};
+
+}  // namespace spot

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "spot/walk/outflow_control.hpp"
+
+#include <algorithm>
+
+#include "spot/base/errors.hpp"
+#include "spot/walk/calibration.hpp"
+
+namespace spot {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double parts_of_grain = 1024.0;  // grain_volume, in a room above this one
+
+}  // namespace
+
+OutflowControl::OutflowControl(const SpotParameters& parameters, const Container& container, double diameter)
+    : on_(parameters.holds_outflow),
+      births_(parameters.injection_rate),
+      volume_of_birth_(parts_of_grain * parameters.missing_volume(diameter) /
+                       (pi / 6.0 * diameter * diameter * diameter)),
+      delay_(parameters.radius / parameters.speed),
+      memory_time_(calibration::climb_of_flow_memory * delay_),
+      interval_(calibration::climb_between_surfaces * delay_),
+      counted_(container.outlets().size(), 0),
+      missing_(container.outlets().size(), 0.0) {}
+
+/// Volume (1024 = grain_volume).
+double OutflowControl::asked(std::size_t outlet, double from, double until) const {
+  return volume_of_birth_ *
+         births_.expected_births(outlet, std::max(0.0, from - delay_), std::max(0.0, until - delay_));
+}
+
+bool OutflowControl::update(double now, Communicator& communicator) {
+  constexpr double rounded = 1.0 + 1e-12;  // times of calls are sums of shorter intervals
+  if (!on_ || now * rounded < static_cast<double>(updates_) * interval_) return false;
+  updates_ = static_cast<std::int64_t>(now * rounded / interval_) + 1;
+  const std::vector<std::int64_t> found = communicator.sum(counted_);
+  for (std::size_t k = 0; k < missing_.size(); ++k) {
+    missing_[k] += asked(k, updated_, now) - static_cast<double>(found[k]);
+    // No more than factors have room for: what an outlet lacked while no grains were above it is not made good.
+    const double most = calibration::largest_outflow_correction * births_.largest(k) * volume_of_birth_ * memory_time_;
+    missing_[k] = std::clamp(missing_[k], -most, most);
+    counted_[k] = 0;
+  }
+  updated_ = now;
+  return true;
+}
+
+std::vector<double> OutflowControl::factors() const {
+  std::vector<double> factors(missing_.size(), 1.0);
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    const double rate = births_.at(k, updated_) * volume_of_birth_;
+    if (rate > 0.0)
+      factors[k] += std::clamp(missing_[k] / (rate * memory_time_), -calibration::largest_outflow_correction,
+                               calibration::largest_outflow_correction);
+  }
+  return factors;
+}
+
+void OutflowControl::save(Bytes& bytes) const {
+  if (!on_) return;
+  append(bytes, updates_);
+  append(bytes, updated_);
+  append(bytes, counted_);
+  append(bytes, missing_);
+}
+
+void OutflowControl::restore(ByteReader& saved, bool counts) {
+  if (!on_) return;
+  updates_ = saved.take<std::int64_t>();
+  updated_ = saved.take<double>();
+  const auto counted = saved.take_all<std::int64_t>();
+  missing_ = saved.take_all<double>();
+  if (counted.size() != counted_.size() || missing_.size() != counted_.size())
+    throw InvalidState("the saved outflow is damaged");
+  if (!counts) return;
+  for (std::size_t k = 0; k < counted.size(); ++k) counted_[k] += counted[k];
+}
+
+}  // namespace spot

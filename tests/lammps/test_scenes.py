@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""examples/periodic-slot and examples/two-outlets, a short stretch of each, on their real packings."""
+
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+from lammps_runs import FRONT_END, PLUGIN, ROOT, read_dump
+
+
+def run_deck(folder, deck, out, **variables):
+    """Snapshots of the deck, and what the program said."""
+    words = [word for name, value in {"out": out, **variables}.items() for word in ("-var", name, str(value))]
+    done = subprocess.run([FRONT_END, "-in", deck, "-log", "none", "-nocite", *words], cwd=ROOT / "examples" / folder,
+                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    frames = [read_dump(path)[0] for path in sorted(out.glob("drain.*.dump"), key=lambda path: int(path.suffixes[-2][1:]))]
+    return [frame for _, frame in frames], done.stdout
+
+
+def test_the_slot_drains_by_its_law_and_only_through_the_slot(tmp_path):
+    frames, said = run_deck("periodic-slot", "in.slot", tmp_path / "out", tau_run=3)
+    assert "predicts an outflow of 17700" in said  # 309.5 a tau
+    first, last = frames[0], frames[-1]
+    assert len(first["id"]) == 15400 and 100 < 15400 - len(last["id"]) < 3 * 400
+    gone = ~np.isin(first["id"], last["id"])
+    assert np.abs(first["x"][gone]).max() < 0.003 * 6
+
+
+@pytest.mark.parametrize("first, second, gone_from", [(9, 10, [-1]), (0.01, 9, [1]), (0.01, 0.02, [-1, 1])])
+def test_outlets_open_and_close(tmp_path, first, second, gone_from):
+    frames, _ = run_deck("two-outlets", "in.two_outlets", tmp_path / "out", tau_run=3, first=first, second=second, outflow=70)
+    gone = ~np.isin(frames[0]["id"], frames[-1]["id"])
+    assert np.count_nonzero(gone) > 50
+    assert sorted(set(np.sign(frames[0]["x"][gone]))) == gone_from
