@@ -8,12 +8,13 @@ endif()
 set(Python_EXECUTABLE ${SPOT_PYTHON_PROGRAM})
 find_package(Python REQUIRED COMPONENTS Interpreter)
 cmake_host_system_information(RESULT system QUERY DISTRIB_INFO)
-# Versions of LAMMPS don't mix: the plugin is for this one alone.
-execute_process(COMMAND ${DPKG_QUERY} --show --showformat=\${Version} liblammps0
-  OUTPUT_VARIABLE lammps ERROR_QUIET RESULT_VARIABLE unknown)
-if(unknown)
+# Versions of LAMMPS don't mix: the plugin is for this one alone. Debian 13 calls the library's package liblammps0t64.
+execute_process(COMMAND ${DPKG_QUERY} --show "--showformat=\${db:Status-Abbrev}\${Package} (= \${Version})\n" liblammps0*
+  OUTPUT_VARIABLE known ERROR_QUIET)
+if(NOT known MATCHES "(^|\n)ii (liblammps0[a-z0-9]*) (\\(= [^)]+\\))")
   return()
 endif()
+set(lammps "${CMAKE_MATCH_2} ${CMAKE_MATCH_3}, lammps ${CMAKE_MATCH_3}")
 math(EXPR next_python "${Python_VERSION_MINOR} + 1")
 
 set(CPACK_GENERATOR DEB)
@@ -30,7 +31,7 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE "1~deb${system_VERSION_ID}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 string(JOIN ", " CPACK_DEBIAN_PACKAGE_DEPENDS
-  "liblammps0 (= ${lammps})" "lammps (= ${lammps})"
+  "${lammps}"
   "python3 (>= 3.${Python_VERSION_MINOR})" "python3 (<< 3.${next_python})"
   python3-numpy python3-scipy python3-matplotlib python3-zstandard python3-pil)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libeigen3-dev")

@@ -17,5 +17,6 @@ mkdir -p results/packages
 for release in "$@"; do
   rm -f results/packages/*"~deb${release}_"*.deb
   scripts/in_debian.sh --share results/packages "$release" scripts/package_build.sh /shared
-  scripts/in_debian.sh --share results/packages --bare "$release" scripts/package_try.sh /shared/*"~deb${release}_"*.deb
+  deb=$(basename results/packages/*"~deb${release}_"*.deb)
+  scripts/in_debian.sh --share results/packages --bare "$release" scripts/package_try.sh "/shared/$deb"
 done
