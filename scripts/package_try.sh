@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
-# Installs a package in a Debian that has none of what it needs, uses it, removes it, and looks for what is left. As root.
+# Installs a package in a Debian that has none of what it needs, uses it, removes it, and looks for what is left.
+# As root.
 #
 #   scripts/package_try.sh FILE.deb
 set -euo pipefail
 
 case "${1:-}" in
-  "" | -*) sed -n '3,5s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  "" | -*) sed -n '3,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
 deb=$1
 share=/usr/share/spot-drainage
@@ -43,7 +44,8 @@ as_user "cd silo && spot-compare reference/dem-statistics.npz post -o report && 
 as_user "cd silo && spot-measure post -o spot.npz"
 as_user "cd silo && spot-render spot=post --times 0 2 -o silo.png && ls -s silo.png"
 as_user "cd silo && spot-calibrate --help | head -1"
-as_user "spot-import $share/examples/own-hopper/packing.data.gz --fit cone-and-cylinder --orifice 0.012 --outflow 5700 -o own"
+as_user "cp $share/examples/own-hopper/packing.data.gz ."
+as_user "spot-import packing.data.gz --fit cone-and-cylinder --orifice 0.012 --outflow 5700 -o own"
 as_user "cd own && spot-check in.spot"
 as_user "cd own && sed -i 's/^run .*/run 4/' in.spot && lmp -in in.spot | grep -A2 '^Step'"
 as_user "python3 -c 'import spotcore; print(spotcore.__version__)'"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
-# Makes Debian packages, results/packages/*.deb, each in a Debian of its release, and tries each in a bare one, as a user
-# would: installs it, drains a silo by Debian's own lmp, compares, removes it, and looks for what is left.
+# Makes Debian packages, results/packages/*.deb, each in a Debian of its release, and tries each in a bare one, as a
+# user would: installs it, drains a silo by Debian's own lmp, compares, removes it, and looks for what is left.
 #
 #   scripts/packages.sh          for Debian 12 and 13
 #   scripts/packages.sh 12       for this one

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-2.0-or-later
-# Makes the pictures of the documents, where these have them. Runs the decks that are drawn, and ./run.sh where its dumps are
-# not there yet.
+# Makes the pictures of the documents, where these have them. Runs the decks that are drawn, and ./run.sh where its
+# dumps are not there yet.
 #
 #   scripts/pictures.sh                  all; ten minutes of one core, after ./run.sh
 #   scripts/pictures.sh hoppers python   those of these examples
@@ -14,7 +14,8 @@ case "${1:-}" in
 esac
 [ $# -gt 0 ] || set -- "${all[@]}"
 for example in "$@"; do
-  [[ " ${all[*]} " == *" $example "* ]] || { echo "pictures.sh: no pictures of '$example', but of ${all[*]}" >&2; exit 2; }
+  [[ " ${all[*]} " == *" $example "* ]] ||
+    { echo "pictures.sh: no pictures of '$example', but of ${all[*]}" >&2; exit 2; }
 done
 
 scripts/build.sh default lmp
@@ -22,7 +23,7 @@ python=$(scripts/python.sh)
 analysis() { "$python" -B "analysis/$1.py" "${@:2}" >/dev/null; }
 render() { analysis render "$@"; }
 
-# drain EXAMPLE RUN WORDS...: runs the deck of an example with these words; its dumps go to results/pictures/EXAMPLE/RUN.
+# drain EXAMPLE RUN WORDS...: runs the deck of an example with these words; dumps go to results/pictures/EXAMPLE/RUN.
 drain() {
   local out=$PWD/results/pictures/$1/$2
   rm -rf "$out"
@@ -41,7 +42,8 @@ pictures_of_own-hopper() {
   local hopper=results/own-hopper
   rm -rf "$hopper"
   mkdir -p "$hopper"
-  (cd examples/own-hopper && ../../build/bin/lmp -in in.own -log "../../$hopper/log.lammps" -screen none && mv drain.*.dump "../../$hopper")
+  (cd examples/own-hopper && ../../build/bin/lmp -in in.own -log "../../$hopper/log.lammps" -screen none &&
+    mv drain.*.dump "../../$hopper")
   cp examples/own-hopper/scene.json "$hopper"
   render DEM=examples/own-hopper/dem.npz spot=$hopper --times 20 40 60 --height 420 -o docs/pictures/hopper.png
 }
