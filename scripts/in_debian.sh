@@ -9,8 +9,8 @@
 #
 # The Debian is made once, by debootstrap from the package source that apt has here, and kept with what was installed in
 # it in ${XDG_CACHE_HOME:-~/.cache}/spot-drainage/debian-RELEASE; remove that folder to start anew. --bare takes one as
-# debootstrap left it, and removes it afterwards. Files that git ignores are not copied, and what the command makes in the
-# copy, /spot-drainage there, is gone with the next call.
+# debootstrap left it, and removes it afterwards. Files that git ignores are not copied, and what the command makes in
+# the copy, /spot-drainage there, is gone with the next call.
 # The exit status is the command's, or 125 where such a Debian can't be had.
 set -euo pipefail
 checkout=$(dirname "$(dirname "$(readlink -f "$0")")")

@@ -138,3 +138,16 @@ def test_commands_are_found():
     assert documents.script_and_options(readme, "./gone.sh --x") == ("./gone.sh", None, ["--x"])
     assert documents.script_and_options(readme, "spot-render a") == ("spot-render", ROOT / "analysis" / "render.py", [])
     assert documents.script_and_options(readme, "lmp -in in.own") is None
+
+
+def test_pictures_have_their_command():
+    """scripts/pictures.sh makes each picture that documents show."""
+    made, here = set(), ""
+    for line in (ROOT / "scripts" / "pictures.sh").read_text().splitlines():
+        if found := re.search(r"\bhere=(\S+)", line):
+            here = found.group(1)
+        made |= set(re.findall(r"[\w./-]+\.(?:png|webp)\b", line.replace("$here", here)))
+    shown = {name((path.parent / target).resolve()) for path in documents.documents() if path.suffix == ".md"
+             for _, target in documents.links(path.read_text()) if re.search(r"\.(png|webp|gif|svg|jpg)$", target)}
+    assert "docs/pictures/silo.webp" in shown
+    assert not shown - made, f"scripts/pictures.sh does not make {sorted(shown - made)}"
