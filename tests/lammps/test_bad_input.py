@@ -28,9 +28,9 @@ def test_missing_walls(tmp_path, program):
     has(error_of(deck(fix(walls=None)), tmp_path, program=program), "keyword 'box' is missing", "cylinder x y radius", "region ID")
 
 
-@pytest.mark.parametrize("keyword", ["orifice", "speed", "injection"])
-def test_missing_keyword(tmp_path, keyword):
-    has(error_of(deck(fix(**{keyword: None})), tmp_path), f"keyword '{keyword}' is missing")
+@pytest.mark.parametrize("keyword, named", [("orifice", "orifice"), ("speed", "speed"), ("injection", "outflow")])
+def test_missing_keyword(tmp_path, keyword, named):
+    has(error_of(deck(fix(**{keyword: None})), tmp_path), f"keyword '{named}' is missing")
 
 
 @pytest.mark.parametrize("words, said", [
