@@ -774,9 +774,7 @@ bool FixSpot::was_put_back(std::int64_t grain) const {
 
 /// Each through the outlet that was nearest when it left.
 void FixSpot::count_at_outlets(const std::vector<spot::Grain> &drained) {
-  const spot::Outlets &outlets = model->container->outlets();
-  for (const spot::Grain &grain : drained)
-    ++model->drained_at[static_cast<std::size_t>(&model->container->nearest_outlet(grain.position) - &outlets[0])];
+  for (const spot::Grain &grain : drained) ++model->drained_at[model->container->nearest_outlet_index(grain.position)];
 }
 
 /// Another fix may hand grains to other ranks before LAMMPS asks for those that leave.

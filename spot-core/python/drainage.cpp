@@ -83,7 +83,7 @@ void Drainage::take_drained() {
   for (const spot::Grain& grain : drainage_->take_drained()) {
     drained_.grains.push_back(grain);
     drained_.times.push_back(time());
-    drained_.outlets.push_back(&container_->nearest_outlet(grain.position) - &container_->outlets()[0]);
+    drained_.outlets.push_back(static_cast<std::int64_t>(container_->nearest_outlet_index(grain.position)));
   }
 }
 

@@ -105,9 +105,8 @@ MovesReceived Drainage::take_moves_received() {
 }
 
 void Drainage::add_drained(const std::vector<Grain>& grains, Spots& spots) {
-  const Outlets& outlets = container().outlets();
   for (const Grain& grain : grains)
-    spots.count_drained(static_cast<std::size_t>(&container().nearest_outlet(grain.position) - &outlets[0]),
+    spots.count_drained(container().nearest_outlet_index(grain.position),
                         volume_parts(diameter_, radius_in(diameter_, grain)));
   drained_.insert(drained_.end(), grains.begin(), grains.end());
   counters_.drained += static_cast<std::int64_t>(grains.size());

@@ -37,6 +37,10 @@ const Outlet& Container::nearest_outlet(const Vector3& place) const {
                            [&](const Outlet& a, const Outlet& b) { return distance(a) < distance(b); });
 }
 
+std::size_t Container::nearest_outlet_index(const Vector3& place) const {
+  return static_cast<std::size_t>(&nearest_outlet(place) - &outlets()[0]);
+}
+
 void Container::require_entrance(double spot_radius) const {
   for (const Outlet& outlet : outlets())
     if (outlet.hole->widest_radius() < spot_radius)

@@ -22,7 +22,7 @@ OutflowControl::OutflowControl(const SpotParameters& parameters, const Container
                        (pi / 6.0 * diameter * diameter * diameter)),
       delay_(parameters.radius / parameters.speed),
       memory_time_(calibration::climb_of_flow_memory * delay_),
-      interval_(calibration::climb_between_surfaces * delay_),
+      updates_(calibration::climb_between_surfaces * delay_),
       counted_(container.outlets().size(), 0),
       missing_(container.outlets().size(), 0.0) {}
 
@@ -33,9 +33,7 @@ double OutflowControl::asked(std::size_t outlet, double from, double until) cons
 }
 
 bool OutflowControl::update(double now, Communicator& communicator) {
-  constexpr double rounded = 1.0 + 1e-12;  // times of calls are sums of shorter intervals
-  if (!on_ || now * rounded < static_cast<double>(updates_) * interval_) return false;
-  updates_ = static_cast<std::int64_t>(now * rounded / interval_) + 1;
+  if (!on_ || !updates_.due(now)) return false;
   const std::vector<std::int64_t> found = communicator.sum(counted_);
   for (std::size_t k = 0; k < missing_.size(); ++k) {
     missing_[k] += asked(k, updated_, now) - static_cast<double>(found[k]);
@@ -61,7 +59,7 @@ std::vector<double> OutflowControl::factors() const {
 
 void OutflowControl::save(Bytes& bytes) const {
   if (!on_) return;
-  append(bytes, updates_);
+  updates_.save(bytes);
   append(bytes, updated_);
   append(bytes, counted_);
   append(bytes, missing_);
@@ -69,7 +67,7 @@ void OutflowControl::save(Bytes& bytes) const {
 
 void OutflowControl::restore(ByteReader& saved, bool counts) {
   if (!on_) return;
-  updates_ = saved.take<std::int64_t>();
+  updates_.restore(saved);
   updated_ = saved.take<double>();
   const auto counted = saved.take_all<std::int64_t>();
   missing_ = saved.take_all<double>();

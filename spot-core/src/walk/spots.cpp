@@ -20,7 +20,7 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       shears_(parameters.dilatancy > 0.0 || parameters.spread > 0.0),
       flow_(parameters, container, diameter),
       surface_(parameters, container, diameter),
-      surface_interval_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
+      surfaces_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
       setting_interval_(dilates_ || shears_ || surface_.needed() || outflow_.on()
                             ? calibration::climb_between_settings * parameters.radius / parameters.speed
                             : 0.0) {}
@@ -167,9 +167,7 @@ void Spots::update_flow(double elapsed, Communicator& communicator) {
 }
 
 void Spots::update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator) {
-  constexpr double rounded = 1.0 + 1e-12;  // times of calls are sums of shorter intervals
-  if (!surface_.needed() || now * rounded < static_cast<double>(surfaces_) * surface_interval_) return;
-  surfaces_ = static_cast<std::int64_t>(now * rounded / surface_interval_) + 1;
+  if (!surface_.needed() || !surfaces_.due(now)) return;
   surface_.clear();
   visit_grains([this](const Vector3& position) { surface_.add(position); });
   surface_.gather(communicator);
@@ -229,7 +227,7 @@ void Spots::save(Bytes& bytes) const {
   append(bytes, next_birth_);
   append(bytes, live());
   append(bytes, settings_);
-  append(bytes, surfaces_);
+  surfaces_.save(bytes);
   dilation_.save(bytes);
   flow_.save(bytes);
   surface_.save(bytes);
@@ -241,7 +239,7 @@ void Spots::restore(ByteReader& saved, bool counts) {
   next_birth_ = saved.take<double>();
   take_in(take_spots(saved));
   settings_ = saved.take<std::int64_t>();
-  surfaces_ = saved.take<std::int64_t>();
+  surfaces_.restore(saved);
   dilation_.restore(saved);
   flow_.restore(saved);
   surface_.restore(saved);

@@ -43,6 +43,7 @@ class Container {
 
   /// The outlet, or the image of one, nearest to a place.
   const Outlet& nearest_outlet(const Vector3& place) const;
+  std::size_t nearest_outlet_index(const Vector3& place) const;
 
   /// May a grain that is here now, below the outlets, have come out of one? Else it went through a wall.
   virtual bool may_have_left_to(const Vector3&) const { return true; }

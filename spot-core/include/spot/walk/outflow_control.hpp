@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "spot/base/bytes.hpp"
+#include "spot/base/recurrence.hpp"
 #include "spot/geometry/container.hpp"
 #include "spot/parallel/communicator.hpp"
 #include "spot/walk/parameters.hpp"
@@ -51,8 +52,8 @@ class OutflowControl {
   bool on_;
   Injection births_;
   double volume_of_birth_;  // 1024 = grain_volume
-  double delay_, memory_time_, interval_;
-  std::int64_t updates_ = 0;           // intervals until the next one
+  double delay_, memory_time_;
+  Recurrence updates_;
   double updated_ = 0.0;               // when it was last
   std::vector<std::int64_t> counted_;  // by this rank, since then
   std::vector<double> missing_;        // M

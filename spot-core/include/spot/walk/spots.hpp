@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "spot/base/bytes.hpp"
+#include "spot/base/recurrence.hpp"
 #include "spot/parallel/communicator.hpp"
 #include "spot/parallel/workers.hpp"
 #include "spot/walk/critical_state.hpp"
@@ -137,8 +138,7 @@ class Spots {
   bool shears_;  // do spots have to know how the flow is sheared?
   FlowField flow_;
   FreeSurface surface_;
-  double surface_interval_;
-  std::int64_t surfaces_ = 0;  // intervals until the surface is to be found next
+  Recurrence surfaces_;  // when it is found anew
 
   // Of spots that step in the order of time.
   std::vector<Event> events_;  // a heap of next steps; those of removed spots are dropped when they come up
