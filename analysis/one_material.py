@@ -25,7 +25,6 @@ from spot_analysis.statistics import run_statistics  # noqa: E402
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 SILO = os.path.join(FOLDER, os.pardir, "examples", "silo")
 TAU = math.sqrt(0.003 / 9.81)  # s, of the deck
-BIRTHS = 613 / 69.6  # spots a grain that leaves, 1/(w N) and the 1.7 % of examples/silo/in.silo_spot
 BASELINES = ("nothing", "kinematic")
 # What is built into the deck's parameters and can be switched off: name -> {"options": words for fix spot, "variables": {}}.
 INGREDIENTS = {
@@ -44,7 +43,7 @@ class Reference:
     """A DEM run and how the deck drains the same silo.
 
     statistics, twins : files of measure.py in examples/silo; twins are further DEM runs of the same silo
-    outflow : DEM's, grains a tau, from which the births of spots follow: nu_s = F / (w N), with the deck's own factor
+    outflow : DEM's, grains a tau, which births of spots follow
     variables : of the deck; packing : file in examples/silo
     windows : window -> (start, end), tau; by default those of ``criteria.WINDOWS`` that the run reaches
     not_carried : pattern of the labels of criteria -> why DEM's run cannot carry them, besides the time at which it ends
@@ -58,10 +57,6 @@ class Reference:
     windows: dict = None
     not_carried: dict = field(default_factory=dict)
 
-    def births(self):
-        """nu_s, 1/tau."""
-        return round(self.outflow * BIRTHS, 1)
-
     def load(self):
         """Statistics of DEM and of its twins."""
         return [run_statistics.load(os.path.join(SILO, path)) for path in (self.statistics, *self.twins)]
@@ -71,7 +66,7 @@ class Reference:
 
     def deck_variables(self, seed, last):
         """name -> text; last : tau, when the run ends."""
-        return {"packing": os.path.abspath(os.path.join(SILO, self.packing)), "births": f"{self.births():g}", **self.variables,
+        return {"packing": os.path.abspath(os.path.join(SILO, self.packing)), "outflow": f"{self.outflow:g}", **self.variables,
                 "seed": str(seed), "time": f"{last * TAU:.9g}"}
 
     def why_not(self, criterion, run):
@@ -222,9 +217,9 @@ def rows_table(dems):
                 reasons.append(reason)
             cells.append(f"- ({reasons.index(reason) + 1})" if reason else "yes")
         lines.append([f"{criterion.family}: {criterion.label}", criterion.bound.text() if criterion.bound else "reported", *cells])
-    births = ["births of spots (1/tau)", "", *(f"{REFERENCES[name].births():g}" for name in dems)]
+    outflow = ["outflow asked for (1/tau)", "", *(f"{REFERENCES[name].outflow:g}" for name in dems)]
     numbered = "\n".join(f"{number}. {reason}" for number, reason in enumerate(reasons, 1))
-    return f"{family_table.markdown([*lines, births])}\n\nWhy not:\n\n{numbered}"
+    return f"{family_table.markdown([*lines, outflow])}\n\nWhy not:\n\n{numbered}"
 
 
 def heading(name, run):

@@ -21,7 +21,7 @@ SPOT_SPEED = 3.0  # d/tau, of the example
 SILOS = {5_000: (10, 27, 1), 22_000: (10, 200, 1), 55_000: (25, 200, 1), 165_000: (25, 200, 3), 495_000: (25, 200, 9),
          1_045_000: (25, 200, 19)}
 EXAMPLE_GRAINS = 55_000
-INJECTIONS = [0.5, 1, 2, 4]  # of the example's
+OUTFLOWS = [0.5, 1, 2, 4]  # of the example's
 TIMESTEP, LONG_TIMESTEP = 0.2, 2  # tau; with the second, LAMMPS does a tenth as much
 
 
@@ -45,10 +45,10 @@ def write_packing(path, grains, half_width, height, copies):
     return len(all_grains), wide
 
 
-def measure(silo, injection, grains, options, work):
+def measure(silo, outflow, grains, options, work):
     """A flat dictionary."""
     half_width, height, copies = SILOS[silo]
-    folder = work / f"{silo}-{injection:g}"
+    folder = work / f"{silo}-{outflow:g}"
     folder.mkdir(parents=True)
     count, wide = write_packing(folder / "packing.data", grains, half_width, height, copies)
     # A low silo is steady earlier, and empty sooner.
@@ -56,8 +56,8 @@ def measure(silo, injection, grains, options, work):
 
     def flow(timestep):
         # Before there is a fix, LAMMPS says what memory it needs by itself.
-        deck = spot_deck(f"injection $({injection}*v_injection) {options.fix}", folder / "packing.data", wide, timestep, ["run 0"])
-        return run_spot(f"{count:,} grains, injection x {injection:g}, steps of {timestep} tau", options.lmp, folder, deck, warm_up,
+        deck = spot_deck(f"outflow $({outflow}*v_outflow/v_tau) {options.fix}", folder / "packing.data", wide, timestep, ["run 0"])
+        return run_spot(f"{count:,} grains, outflow x {outflow:g}, steps of {timestep} tau", options.lmp, folder, deck, warm_up,
                         measured, apart=measured, dumps=False)
 
     # The same trajectory every time: the fastest was disturbed least.
@@ -68,7 +68,7 @@ def measure(silo, injection, grains, options, work):
     processor, with_long = (cost.processor[0] for cost in costs)
     step = (processor - with_long) / (1 / one.timestep - 1 / long.timestep)  # s
     spots = processor - step / one.timestep
-    return {"grains": count, "injection": injection, "spots": one.spots(), "moves_per_second": one.rate("moves"),
+    return {"grains": count, "outflow": outflow, "spots": one.spots(), "moves_per_second": one.rate("moves"),
             "processor": processor, "wall": costs[0].wall[0], "microseconds_per_grain": 1e6 * processor / count,
             "processor_of_spots": spots, "microseconds_per_move": 1e6 * spots / one.rate("moves"),
             "nanoseconds_per_grain_and_step": 1e9 * step / count,
@@ -77,7 +77,7 @@ def measure(silo, injection, grains, options, work):
             "interval_tau": one.interval, "others": max(cost.others for cost in costs)}
 
 
-COLUMNS = {"grains": ("grains", "10,d"), "injection": ("injection", "10g"), "spots": ("spots", "8.0f"),
+COLUMNS = {"grains": ("grains", "10,d"), "outflow": ("outflow", "10g"), "spots": ("spots", "8.0f"),
            "processor": ("processor", "11.4g"), "microseconds_per_grain": ("us/grain", "10.4g"),
            "processor_of_spots": ("of spots", "10.4g"), "microseconds_per_move": ("us/move", "9.3g"),
            "nanoseconds_per_grain_and_step": ("ns/grain/step", "14.3g"), "bytes_per_grain": ("B/grain", "9.0f"),
@@ -94,16 +94,16 @@ def draw(path, points):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    sizes = [one for one in points if one["injection"] == 1]
-    injections = sorted((one for one in points if one["grains"] == at_example(points)), key=lambda one: one["injection"])
+    sizes = [one for one in points if one["outflow"] == 1]
+    outflows = sorted((one for one in points if one["grains"] == at_example(points)), key=lambda one: one["outflow"])
     figure, (by_size, by_spots, memory) = plt.subplots(1, 3, figsize=(15, 4.5), constrained_layout=True)
     grains = [one["grains"] for one in sizes]
     by_size.plot(grains, [one["microseconds_per_move"] for one in sizes], "o-", label="of a move of a spot (us)")
     by_size.plot(grains, [one["nanoseconds_per_grain_and_step"] for one in sizes], "s--", label="of a grain and LAMMPS step (ns)")
     by_size.set(xlabel="grains", ylabel="processor time", xscale="log", yscale="log")
-    by_spots.plot([one["spots"] for one in injections], [one["microseconds_per_move"] for one in injections], "o-")
-    by_spots.set(xlabel=f"spots alive, {injections[0]['grains']:,} grains", ylabel="processor time of a move (us)",
-                 xscale="log", ylim=(0, 1.3 * max(one["microseconds_per_move"] for one in injections)))
+    by_spots.plot([one["spots"] for one in outflows], [one["microseconds_per_move"] for one in outflows], "o-")
+    by_spots.set(xlabel=f"spots alive, {outflows[0]['grains']:,} grains", ylabel="processor time of a move (us)",
+                 xscale="log", ylim=(0, 1.3 * max(one["microseconds_per_move"] for one in outflows)))
     memory.plot(grains, [one["bytes_per_grain"] for one in sizes], "o-", label="fix spot")
     memory.plot(grains, [one["peak_bytes_per_grain_of_program"] for one in sizes], "s--", label="peak of the whole program")
     memory.axhline(1000, color="0.7", linewidth=0.8)
@@ -115,7 +115,7 @@ def draw(path, points):
 
 
 def at_example(points):
-    """The number of grains for which the injection was varied."""
+    """The number of grains for which the outflow was varied."""
     return max((one["grains"] for one in points), key=lambda count: (sum(one["grains"] == count for one in points), count))
 
 
@@ -123,10 +123,10 @@ def benchmark(options, work):
     grains = example_grains()
     silos = [silo for silo in SILOS if silo <= options.largest]
     cases = [(silo, 1) for silo in silos]
-    cases += [(EXAMPLE_GRAINS, injection) for injection in INJECTIONS if injection != 1 and EXAMPLE_GRAINS in silos]
+    cases += [(EXAMPLE_GRAINS, outflow) for outflow in OUTFLOWS if outflow != 1 and EXAMPLE_GRAINS in silos]
     points = []
-    for silo, injection in cases:
-        points.append(measure(silo, injection, grains, options, work))
+    for silo, outflow in cases:
+        points.append(measure(silo, outflow, grains, options, work))
         say(line(points[-1]))
     print("Processor s per simulated s, a grain's share, what is left without LAMMPS steps, of it a move; a step, a grain's share; "
           "memory of fix spot, and peak of the program", HEADER, *map(line, points), sep="\n")

@@ -49,8 +49,8 @@ class OutletCommand {
   /// Births at each outlet. With `outflow` and `beverloo` they are as many as carry what is given, or predicted.
   spot::Injection injection(const spot::SpotParameters& spots, double diameter) const;
 
-  /// Whether births are to follow what leaves: with `outflow`.
-  bool holds_outflow() const { return !outflow_.empty(); }
+  /// Whether births are to follow what leaves: with `outflow` and `beverloo`.
+  bool holds_outflow() const { return rates_.empty(); }
 
   /// By Beverloo's law, the grains that leave through each outlet per time; none without `beverloo`. Throws
   /// spot::InvalidParameter, naming the outlet, if one is too narrow for the law.

@@ -61,6 +61,7 @@ Drainage::Drainage(const Packing& packing, const Walls& walls, const std::vector
   const spot::Outlets holes = holes_of(outlets);
   spot::SpotParameters spots = parameters.complete();
   spots.injection_rate = injection_of(outlets, spots, diameter_);
+  spots.holds_outflow = holds_outflow(outlets);
   const std::vector<spot::Grain> grains = packing.grains();
   const spot::DrainageLimits limits{outlet_height.value_or(holes.height()), parameters.largest_overlap};
   const double extent = extent_of(packing, walls, holes, limits.outlet);

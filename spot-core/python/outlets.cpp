@@ -44,9 +44,9 @@ Outlet outlet_with(const spot::Outlet& hole, MaybeNumber outflow, MaybeNumber bi
 
 constexpr const char* rates = R"(
 centre: where its middle is (length); all outlets are at one height.
-outflow: grains that leave per time, as measured; or
-births: spots that enter per time (Parameters.births_for() of the outflow); or
-gravity: length / time^2; the outflow follows from Beverloo's law, which is for flat bases.
+outflow: grains that leave per time, as measured; births follow what leaves, so that no less does; or
+births: spots that enter per time (Parameters.births_for() of an outflow): of what they bring some is lost; or
+gravity: length / time^2; the outflow follows from Beverloo's law, which is for flat bases, and is held.
 schedule: pairs (time, factor): from a time on, so many times the rate; 0 closes it to spots.
 
 ValueError unless just one of the three is given, and times increase.
@@ -89,6 +89,13 @@ spot::Injection injection_of(const std::vector<Outlet>& outlets, const spot::Spo
     if (PyErr_WarnEx(PyExc_UserWarning, doubt.c_str(), 1) != 0) throw py::error_already_set();
   }
   return spot::Injection(births);
+}
+
+bool holds_outflow(const std::vector<Outlet>& outlets) {
+  const auto by_births = [](const Outlet& outlet) { return outlet.kind == Outlet::Rate::births; };
+  if (std::none_of(outlets.begin(), outlets.end(), by_births)) return true;
+  if (std::all_of(outlets.begin(), outlets.end(), by_births)) return false;
+  throw spot::InvalidParameter("give 'births' for all outlets or for none: where an outflow is held, births follow it");
 }
 
 void bind_outlets(pybind11::module_& module) {

@@ -30,6 +30,9 @@ spot::Outlets holes_of(const std::vector<Outlet>& outlets);
 /// Warns, in Python, of holes that are beyond the range of Beverloo's law.
 spot::Injection injection_of(const std::vector<Outlet>& outlets, const spot::SpotParameters& spots, double diameter);
 
+/// Whether births follow what leaves. Throws spot::InvalidParameter if they do at some outlets only.
+bool holds_outflow(const std::vector<Outlet>& outlets);
+
 void bind_outlets(pybind11::module_& module);
 
 }  // namespace spotcore

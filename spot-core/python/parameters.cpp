@@ -81,7 +81,6 @@ void bind_numbers(Class& c) {
          "beta: how much rather spots go where the surface is higher.");
   number(c, "nonaffine", spots, &S::nonaffine, "S: how much grains go against their neighbours.");
   number(c, "nonaffine_length", spots, &S::nonaffine_length, "l: of fall in which a grain goes the same way (length).");
-  number(c, "holds_outflow", spots, &S::holds_outflow, "Births follow what leaves: what they carry, and no less.");
   number(c, "together", spots, &S::together, "All spots step at the same times.");
   number(c, "seed", spots, &S::seed, "Of all random numbers.");
   number(c, "tolerance", relaxation, &R::tolerance, "Rms overlap that moves may build up between sweeps (diameters).");

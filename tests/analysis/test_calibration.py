@@ -121,12 +121,12 @@ def test_parameter_file_speaks_the_decks_language(result):
     lines = [line for line in result[2][0].read_text().splitlines() if not line.startswith("#")]
     sources = ANALYSIS.parent
     deck = "".join((sources / file).read_text() for file in ("examples/silo/in.silo_spot", "lammps-package/glass-beads.lmp"))
-    assert [line.split()[1] for line in lines] == ["profile", "radius", "influence", "volume", "diffusion", "dilation", "speed", "injection"]
+    assert [line.split()[1] for line in lines] == ["profile", "radius", "influence", "volume", "diffusion", "dilation", "speed", "outflow"]
     assert lines[0].split("#")[0].split() == ["variable", "profile", "index", "uniform"]
     for line in lines[1:]:
         command, name, style, formula = line.split("#")[0].split()
         assert (command, style) == ("variable", "index")
-        assert f"${{{name}}}" in deck
+        assert f"${{{name}}}" in deck or f"$(v_{name}/" in deck
         value = eval(formula.strip("$()"), {"v_d": 1.0, "v_tau": 1.0})  # as the deck would, where d = tau = 1
         assert value == pytest.approx(result[1]["parameters"][name]["value"], rel=1e-5)
 

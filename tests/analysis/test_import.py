@@ -110,7 +110,7 @@ def test_a_hopper_comes_back_from_other_axes_and_units(tmp_path, hopper, axis, p
     assert diameter == pytest.approx(D, rel=1e-12)
     assert np.allclose(positions, hopper, rtol=0, atol=1e-9)
     assert "walls add cone z 0 0 0.012 0.03 0 0.045 walls add cylinder z 0 0 0.03 0.045 0.105 &" in deck
-    assert "variable  F equal 5700 " in deck and "injection $(v_spots_a_grain*v_F)" in deck
+    assert "variable  F equal 5700 " in deck and "outflow ${F}" in deck
 
 
 def test_any_direction_of_gravity():

@@ -65,7 +65,7 @@ def test_table(call, decks, output):
     assert sorted(path.name for path in output.iterdir()) == ["plug.1.npz", "plug.2.npz", "plug.kinematic.npz", "plug.nothing.npz", "table.md"]
     np.testing.assert_allclose(run_statistics.load(output / "plug.2.npz").times, TIMES)
     asked = (decks / "called").read_text().splitlines()[0]
-    for words in ("-var births 704.6", "-var half_width 10", "-var seed", f"-var time {14 * one_material.TAU:.9g}", "-var options accuracy normal "):
+    for words in ("-var outflow 80", "-var half_width 10", "-var seed", f"-var time {14 * one_material.TAU:.9g}", "-var options accuracy normal "):
         assert words in asked + " "
 
 
@@ -84,9 +84,9 @@ def test_runs_of_other_settings_are_not_taken_for_these(call, output, words):
 
 def test_words_for_the_deck(call, decks, tmp_path):
     (decks / "called").unlink()
-    call("-o", tmp_path, "--seeds", 1, "--no-baselines", "--without", "wings", "--options", "dz 0.001", "--set", "births=3", "influence=1e-3")
+    call("-o", tmp_path, "--seeds", 1, "--no-baselines", "--without", "wings", "--options", "dz 0.001", "--set", "outflow=3", "influence=1e-3")
     asked = (decks / "called").read_text()
-    for words in ("-var births 3 ", "-var influence 1e-3", "-var feathers 0", "-var options accuracy normal wings no dz 0.001 "):
+    for words in ("-var outflow 3 ", "-var influence 1e-3", "-var feathers 0", "-var options accuracy normal wings no dz 0.001 "):
         assert words in asked
 
 
@@ -131,7 +131,3 @@ def test_references_carry_the_rows_that_they_are_said_to(name):
     assert [one.label for one in carried if one.bound and verdicts[one].met is not True] == []
     assert [one.label for one in set(criteria.CRITERIA) - set(carried) if verdicts[one].met is not None] == []
 
-
-def test_births_follow_the_outflow():
-    assert one_material.REFERENCES["reference"].births() == 613
-    assert one_material.REFERENCES["orifice-6.5"].births() == pytest.approx(613 * 31.9 / 69.6, abs=0.05)

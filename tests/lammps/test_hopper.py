@@ -36,13 +36,13 @@ def test_the_deck_drains_both_hoppers(tmp_path, angle, height):
 @pytest.mark.parametrize("angle, predicted", [(30, 115.7), (60, 78.7)])
 def test_the_outflow_may_be_predicted(tmp_path, angle, predicted):
     """As was written down, in grains a tau, before DEM drained these hoppers."""
-    _, said = run_hopper(tmp_path / "out", angle=angle, rates="beverloo", number="9.81 hopper 24")
+    _, said = run_hopper(tmp_path / "out", angle=angle, rate="beverloo 9.81 hopper 24")
     outflow = float(re.search("predicts an outflow of ([0-9.]+)", said).group(1))
     assert outflow * (0.003 / 9.81) ** 0.5 == pytest.approx(predicted, abs=0.06)
     assert f"half-angle of {angle} degrees" in said and "cones of less than 66" in said
 
 
 def test_a_hopper_is_no_flat_base(tmp_path):
-    _, said = run_hopper(tmp_path / "out", rates="beverloo", number=9.81)
+    _, said = run_hopper(tmp_path / "out", rate="beverloo 9.81")
     assert "Beverloo's law predicts an outflow of 4111" in said  # 71.9 a tau
     assert "end of a hopper with a half-angle of 30 degrees: Beverloo's law is for flat bases" in said

@@ -429,6 +429,8 @@ def one_thread_until(time):
     (lambda: beads(profile="square"), "profile is 'square' but must be one of"),
     (lambda: Outlet.round((0, 0, 0), 4.0), "one of 'outflow', 'births' and 'gravity'"),
     (lambda: Outlet.round((0, 0, 0), 4.0, outflow=1.0, births=2.0), "one of 'outflow'"),
+    (lambda: Drainage(PACKING, BOX, [Outlet.round((-4, 0, 0), 2.0, outflow=1.0), Outlet.round((4, 0, 0), 2.0, births=2.0)],
+                      beads()), "'births' for all outlets or for none"),
     (lambda: Outlet.round((0, 0, 0), 4.0, outflow=-3.0), "outflow is -3"),
     (lambda: Outlet.round((0, 0, 0), -4.0, outflow=3.0), "-4"),
     (lambda: Outlet.slot((0, 0, 0), (4.0, 0.0), outflow=3.0), " 0 "),

@@ -4,8 +4,7 @@
 from .estimate import combine
 from .parameters import SYMBOLS, UNITS
 
-IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "dilation": "", "speed": "*v_d/v_tau",
-               "injection": "/v_tau"}
+IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "dilation": "", "speed": "*v_d/v_tau"}
 
 
 # R_s of spots with a profile over that of uniform ones with the same volume: the mean share is 1 or 0.4. A test holds
@@ -31,8 +30,7 @@ def lammps_variables(parameters, source, span, profile="parabolic"):
                      f"  # {SYMBOLS[name]}, +- {error:.2g} {UNITS[name]}")
     flux = combine(lambda w, grains, rate: w * grains * rate, *(parameters[name] for name in ("influence", "volume",
                                                                                               "injection")))
+    lines.append(f"variable        {'outflow':10} index {float(flux.value):.6g}  # F = nu_s w <N>, +- {float(flux.error):.2g} 1/tau")
     if profile != "uniform":
         lines.append(f"# R_s is that of {profile} spots with the volume of uniform ones of R_s = {float(parameters['radius'].value):.4g} d.")
-    lines.append(f"# Errors of w, <N> and nu_s go together: nu_s w <N> = {float(flux.value):.4g} +- "
-                 f"{float(flux.error):.2g} /tau. Change all or none.")
     return "\n".join(lines) + "\n"

@@ -36,8 +36,7 @@ def parameters(measured, response):
                                    f"{float(response['particle_diffusion'].value):.2g} d); choose a longer interval or "
                                    "another --response")
     grains = measured.grains_in(radius)
-    injection = combine(lambda outflow, kept, w, count: outflow / (kept * w * count), measured.outflow, response["outflow"],
-                        influence, grains)
+    injection = combine(lambda outflow, w, count: outflow / (w * count), measured.outflow, influence, grains)
     return {"radius": radius, "influence": influence, "volume": grains, "diffusion": diffusion,
             "dilation": response["dilation"], "speed": speed, "injection": injection}
 
@@ -45,11 +44,10 @@ def parameters(measured, response):
 def response_of(measured, put_in, slopes):
     """What a spot run shows against what was put into it: a response, name -> Estimate.
 
-    put_in : name -> number, the run's parameters; without "volume" what its spots hold counts
+    put_in : name -> number, the run's parameters
     slopes : a response, whose SLOPES are kept: one run alone cannot tell them
     """
     radius = Estimate(np.array(put_in["radius"]), np.full_like(measured.outflow.replicates, put_in["radius"]))
-    count = put_in.get("volume", measured.grains_in(radius).value)
     return {
         "radius": combine(lambda shown, size, slope: shown - RADIUS - slope * (size - RADIUS), measured.correlation.radius,
                           radius, slopes["radius_slope"]),
@@ -59,6 +57,4 @@ def response_of(measured, put_in, slopes):
             measured.diffusion.length, slopes["share"], slopes["diffusion_slope"]),
         **{name: slopes[name] for name in SLOPES},
         "speed": combine(lambda value, relative: value / (put_in["speed"] * relative), measured.speed, measured.relative_speed(slopes["dilation"])),
-        "outflow": combine(lambda outflow: outflow / (put_in["injection"] * put_in["influence"] * count),
-                           measured.outflow),
     }

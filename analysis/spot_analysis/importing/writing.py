@@ -86,7 +86,7 @@ def deck(source, data, positions, diameter, walls, wall_words, orifice, outflow,
     rate, measured = "beverloo ${g}", ""
     if outflow:
         time = "second" if si else "unit of time"
-        rate, measured = "injection $(v_spots_a_grain*v_F)", f"variable  F equal {number(outflow)}              # grains that leave in a {time}\n"
+        rate, measured = "outflow ${F}", f"variable  F equal {number(outflow)}              # grains that leave in a {time}\n"
     return HEAD.format(source=os.path.basename(source), walls=walls.name if walls else "walls as given", diameter=number(diameter),
                        unit=", m" if si else "", gravity=number(gravity), outflow=measured, units="si" if si else "lj", folder=folder,
                        data=data, fix=wall_words or fix_words(walls, top_of(positions, diameter)), orifice=words(*orifice), rate=rate,

@@ -64,7 +64,7 @@ def numbers(run, tau):
         Row("diffusion length b_s", run["diffusion"] / d, "d", 1.1, 1.6, CALIBRATED),
         Row("speed v_s", run["speed"] * tau / d, "d/tau", 2, 3.3, CALIBRATED + "; else g or the units are others"),
         Row("dilation c_0", run["dilation"], "", 0.03, 0.03, "chosen; v_s goes with it"),
-        Row("outflow", outflow, f"grains/{time}", None, None, "births x V_s; runs drain some 1.5 % less"),
+        Row("outflow", outflow, f"grains/{time}", None, None, "births x V_s; with *injection* 2 to 6 % less leave"),
         Row("outflow", outflow * tau, "grains/tau", None, None, "an input: nothing here checks it"),
         *[Row(f"  through outlet {k}", outlet["outflow"] * tau, "grains/tau") for k, outlet in enumerate(run["outlets"], 1)
           if len(run["outlets"]) > 1],

@@ -90,7 +90,6 @@ class Parameters:
     surface_exponent: float
     nonaffine: float
     nonaffine_length: float
-    holds_outflow: bool
     together: bool
     seed: int
     profile: str
