@@ -32,7 +32,7 @@ using testing::HasSubstr;
 
 constexpr double reach = 0.6;
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SPOT_SANITIZED
 constexpr int solids = 1000;
 #else
 constexpr int solids = 10000;

@@ -67,7 +67,7 @@ void check_scenes(std::uint64_t scenes) {
   EXPECT_LE(collapsed, 1 + scenes / 500) << "scenes collapsed";
 }
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SPOT_SANITIZED
 constexpr std::uint64_t scenes_in_ci = 60;
 #else
 constexpr std::uint64_t scenes_in_ci = 1000;

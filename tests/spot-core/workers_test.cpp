@@ -115,7 +115,7 @@ TEST(WorkersUnit, CanBeMadeAndDroppedWithoutWork) {
   for (int k = 0; k < 200; ++k) Workers(1 + k % 4);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which need memory for every thread, too
+#ifndef SPOT_SANITIZED  // which need memory for every thread, too
 /// Where the system gives no room for so many stacks.
 TEST(WorkersUnit, ThreadsThatCannotStartAreNamed) {
   const auto in_little_room = [] {
