@@ -111,7 +111,7 @@ Parameters::Parameters(double d, double tau) : diameter(d) {
   spots.dilatancy = 0.15 * d;
   spots.spread = 0.6;
   spots.wall_shear = 0.7;
-  spots.surface_exponent = 4.0;
+  spots.surface_exponent = 3.0;
   spots.nonaffine = 0.15;
   spots.nonaffine_length = 0.5 * d;
   diffusion_length = 1.47 * d;

@@ -24,7 +24,7 @@ Scene::Scene() {
   spots.dilatancy = 0.15;
   spots.spread = 0.6;
   spots.wall_shear = 0.7;
-  spots.surface_exponent = 4.0;
+  spots.surface_exponent = 3.0;
   spots.nonaffine = 0.15;
   spots.nonaffine_length = 0.5;
   spots.seed = 1;
