@@ -5,15 +5,15 @@ import numpy as np
 import pytest
 
 from lammps_runs import FIX, deck, drain, error_of, lattice, needs_mpirun, on_ranks, read_dump, run_ok, thermo, write_data
+from test_outlets import TWO, write_wide
 
 ROUND = "walls add block -5 5 -4 4 0 30 orifice -2.4 0 0 2.2 orifice 2.4 0 0 2.2"
-WINDOW = "radius 2.2 volume 20 window 0.02"
 OPEN = 'variable gate equal "step >= 10 && step < 40"'
 TABLE = "schedule 2 0 0 1 1 4 0"
 
 
-def fix(schedule, rates="injection 150 150", more=""):
-    return f"fix drain all spot {ROUND} influence 1e-2 speed 3.2 {rates} seed 1 {WINDOW} {schedule} {more}"
+def fix(schedule, rates="injection 150 150", more="window 0.1"):
+    return f"fix drain all spot {ROUND} influence 1e-2 speed 3.2 {rates} radius 2.2 volume 20 seed 1 {schedule} {more}"
 
 
 def last(folder):
@@ -32,10 +32,10 @@ def test_steps_are_those_of_a_table(tmp_path, rates):
     table = drain(tmp_path / "table", fix=fix(TABLE, rates), run="run 60")
     follow = dict(fix=fix("schedule 2 v_gate", rates), before=OPEN)
     assert drain(tmp_path / "one", run="run 60", **follow) == table
-    follow["fix"] += " threads 2"
     (tmp_path / "parts").mkdir()
-    run_ok(deck(run="run 15\nrun 10\nwrite_restart part.restart", **follow), tmp_path / "parts", launcher=on_ranks(2))
-    rest = deck(run="run 35", **follow).replace("read_data packing.data", "read_restart part.restart")
+    run_ok(deck(run="run 8\nrun 6\nwrite_restart part.restart", **follow), tmp_path / "parts", launcher=on_ranks(2))
+    follow["fix"] += " threads 2"
+    rest = deck(run="run 46", **follow).replace("read_data packing.data", "read_restart part.restart")
     run_ok(rest, tmp_path / "parts")
     whole, parts = last(tmp_path / "table"), last(tmp_path / "parts")
     assert len(whole["id"]) < len(lattice()) - 20
@@ -51,12 +51,15 @@ def test_steps_are_those_of_a_table_in_the_order_of_time(tmp_path):
 
 def test_outlets_close_and_open_by_what_has_drained(tmp_path):
     """The first is closed after 20 grains, and the second opened."""
+    write_wide(tmp_path)
     before = 'variable first equal "f_drain[9] < 20"\nvariable second equal 1-v_first'
-    out = thermo(run_ok(deck(fix("schedule 1 v_first schedule 2 v_second"), run="run 120", before=before), tmp_path))
+    command = f"fix drain all spot {TWO} influence 1e-2 speed 3.2 injection 90 90 schedule 1 v_first schedule 2 v_second"
+    out = thermo(run_ok(deck(command, "run 120", before), tmp_path))
     first, second = out["f_drain[9]"], out["f_drain[10]"]
-    assert (second[first < 15] <= 1).all(), "closed"
-    assert 20 <= first[-1] < 45, "spots that were there climb on"
-    assert second[-1] > 30
+    assert (second[first < 20] <= 1).all(), "closed"
+    assert 20 <= first[-1] < 120, "spots that were there climb on, for R_s / v_s at 63 grains a unit of time"
+    assert first[-1] <= first[out["Step"] == 80][0] + 5, "closed for good"
+    assert second[-1] > 20
 
 
 def test_a_restart_file_knows_the_variable(tmp_path):
