@@ -378,6 +378,7 @@ void FixSpot::init() {
     model->command.outlets.look_for_hoppers(*model->container);
     model->command.resolve_rates(model->sizes.mean(), model->sizes.mean_volume);
     tell_predicted_outflow();
+    check_variables();
     if (*model->command.time_ordered && comm->nprocs > 1)
       throw spot::InvalidParameter(message("relaxation in the order of time runs on 1 MPI rank, not on ", comm->nprocs,
                                            ": use 'accuracy normal', or 'relax tol' with a tolerance"));
@@ -433,6 +434,48 @@ void FixSpot::tell_predicted_outflow() {
                      hopper.empty() ? "" : "fix spot: this is " + hopper + "\n"));
   }
   for (const std::string &doubt : outlets.doubts(model->sizes.largest)) error->warning(FLERR, "fix spot: " + doubt);
+}
+
+/// A variable may have been deleted, or defined again, since the last run.
+void FixSpot::check_variables() const {
+  for (const auto &[outlet, name] : model->command.outlets.variables()) {
+    const int variable = input->variable->find(name.c_str());
+    const bool exists = variable >= 0;
+    if (exists && input->variable->equalstyle(variable)) continue;
+    throw spot::InvalidParameter(message("variable '", name, "' of 'schedule ", outlet + 1, " v_", name, "' ",
+                                         exists ? "is not equal-style" : "does not exist",
+                                         ": it must be defined by 'variable ", name, " equal ...'"));
+  }
+}
+
+/// Once at the start of each step. LAMMPS counts a step before it is done: for a moment it has to say when it begins.
+void FixSpot::follow_variables() {
+  const auto variables = model->command.outlets.variables();
+  if (variables.empty()) return;
+  --update->ntimestep;
+  modify->clearstep_compute();
+  std::vector<double> factors;
+  for (const auto &[outlet, name] : variables)
+    factors.push_back(input->variable->compute_equal(input->variable->find(name.c_str())));
+  modify->addstep_compute(update->ntimestep + 1);
+  ++update->ntimestep;
+  // All ranks need the same bits, and a sum over ranks may round otherwise on each.
+  MPI_Bcast(factors.data(), static_cast<int>(factors.size()), MPI_DOUBLE, 0, world);
+  const double now = static_cast<double>(model->windows) * model->window;
+  auto factor = factors.begin();
+  for (const auto &[outlet, name] : variables) {
+    const double value = *factor++;
+    const auto refuse = [&, of = outlet, variable = name](const std::string &why) {
+      error->all(FLERR, message("fix spot: variable '", variable, "', the factor on the rate of outlet ", of + 1,
+                                ", is ", value, " at step ", update->ntimestep - 1, ": ", why));
+    };
+    if (!(value >= 0.0) || !std::isfinite(value)) refuse("it must be finite, and 0 or more");
+    try {
+      model->drainage->change_rate(outlet, now, value * model->command.spots.injection_rate.at(outlet, 0.0));
+    } catch (const spot::InvalidParameter &e) {
+      refuse(e.what());
+    }
+  }
 }
 
 /// Of one rank, maybe: all others have to stop, too.
@@ -711,6 +754,7 @@ void FixSpot::initial_integrate(int) {
   spot::Drainage &drainage = *model->drainage;
   try {
     if (somebody_changed_grains()) take_changes();
+    follow_variables();
     // The clock is a multiple of the window: how many of them make a step changes nothing.
     model->windows += model->windows_per_step;
     drainage.advance_to(static_cast<double>(model->windows) * model->window);

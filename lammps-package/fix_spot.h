@@ -67,6 +67,8 @@ class FixSpot : public Fix {
   void check_integrators() const;
   void name_unused_forces();
   void tell_predicted_outflow();
+  void check_variables() const;
+  void follow_variables();
   void make_container();
   void make_drainage();
   double extent() const;

@@ -73,8 +73,19 @@ void OutletCommand::read_hopper(Words& words) {
 
 void OutletCommand::read_schedule(Words& words) {
   const auto outlet = static_cast<std::size_t>(words.integer("the number of an outlet", 1));
-  std::vector<Step>& steps = schedules_[outlet];
-  if (!steps.empty()) throw InvalidParameter(message("'schedule ", outlet, "' is given twice"));
+  if (schedules_.count(outlet) > 0) throw InvalidParameter(message("'schedule ", outlet, "' is given twice"));
+  Schedule& schedule = schedules_[outlet];
+  if (words.next_begins_with("v_")) {
+    const std::string word = words.value("v_name");
+    schedule.variable = word.substr(2);
+    if (schedule.variable.empty())
+      throw InvalidParameter(message("'schedule ", outlet, " v_' has no name: v_name stands for the variable 'name'"));
+    if (words.next_is_number())
+      throw InvalidParameter(message("'schedule ", outlet, ' ', word,
+                                     "' goes on with a number, but has either a variable, or times and factors"));
+    return;
+  }
+  std::vector<Step>& steps = schedule.steps;
   do {
     const double time = words.not_negative("the time of a step of the schedule");
     if (!steps.empty() && time <= steps.back().time)
@@ -145,11 +156,18 @@ spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, doub
   for (std::size_t k = 0; k < rates.size(); ++k) {
     std::vector<spot::RateStep> steps;
     if (const auto schedule = schedules_.find(k + 1); schedule != schedules_.end())
-      for (const Step& step : schedule->second) steps.push_back({step.time, step.factor * rates[k]});
+      for (const Step& step : schedule->second.steps) steps.push_back({step.time, step.factor * rates[k]});
     if (steps.empty() || steps.front().time > 0.0) steps.insert(steps.begin(), {0.0, rates[k]});
     all.emplace_back(steps);
   }
   return spot::Injection(all);
+}
+
+std::map<std::size_t, std::string> OutletCommand::variables() const {
+  std::map<std::size_t, std::string> names;
+  for (const auto& [outlet, schedule] : schedules_)
+    if (!schedule.variable.empty()) names[outlet - 1] = schedule.variable;
+  return names;
 }
 
 std::vector<double> OutletCommand::predicted_outflow(double diameter) const {
@@ -234,9 +252,10 @@ std::string OutletCommand::text_of_rates() const {
   if (!outflow_.empty()) text += "outflow";
   for (const double rate : outflow_) text += precise(' ', rate);
   for (const double rate : rates_) text += (text.empty() ? "" : " ") + precise(rate);
-  for (const auto& [outlet, steps] : schedules_) {
+  for (const auto& [outlet, schedule] : schedules_) {
     text += message("; schedule ", outlet);
-    for (const Step& step : steps) text += precise(' ', step.time, ' ', step.factor);
+    if (!schedule.variable.empty()) text += " v_" + schedule.variable;
+    for (const Step& step : schedule.steps) text += precise(' ', step.time, ' ', step.factor);
   }
   return text;
 }

@@ -49,6 +49,10 @@ class OutletCommand {
   /// Births at each outlet. With `outflow` and `beverloo` they are as many as carry what is given, or predicted.
   spot::Injection injection(const spot::SpotParameters& spots, double diameter) const;
 
+  /// The names of LAMMPS variables whose values are factors on rates, by outlets from 0 on. The rates are for a value
+  /// of 1 up to then.
+  std::map<std::size_t, std::string> variables() const;
+
   /// Whether births are to follow what leaves: with `outflow` and `beverloo`.
   bool holds_outflow() const { return rates_.empty(); }
 
@@ -72,6 +76,12 @@ class OutletCommand {
     double time, factor;
   };
 
+  /// `schedule`: a table, or a LAMMPS variable.
+  struct Schedule {
+    std::vector<Step> steps;
+    std::string variable;
+  };
+
   /// `hopper`: angles in degrees. Without a half-angle the walls tell it.
   struct Hopper {
     double of_material;
@@ -92,8 +102,8 @@ class OutletCommand {
   std::optional<double> gravity_;  // for Beverloo's law
   spot::BeverlooLaw law_;
   std::optional<Hopper> hopper_;
-  std::vector<std::optional<double>> slopes_;           // of the walls at each outlet: tangents of half-angles
-  std::map<std::size_t, std::vector<Step>> schedules_;  // by the number of the outlet, from 1 on
+  std::vector<std::optional<double>> slopes_;  // of the walls at each outlet: tangents of half-angles
+  std::map<std::size_t, Schedule> schedules_;  // by the number of the outlet, from 1 on
 };
 
 #endif

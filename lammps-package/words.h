@@ -28,6 +28,10 @@ class Words {
 
   bool next_is(const char* word) const { return !empty() && words_[next_] == word; }
 
+  bool next_begins_with(const std::string& start) const {
+    return !empty() && words_[next_].compare(0, start.size(), start) == 0;
+  }
+
   bool next_is_number() const {
     double ignored;
     return !empty() && read(words_[next_], ignored);

@@ -68,6 +68,15 @@ TEST(OutletCommand, SchedulesOpenAndCloseAnOutlet) {
   EXPECT_EQ(rates.outlet_of_birth(3.0, 0.01), 1u);
 }
 
+TEST(OutletCommand, SchedulesMayNameVariables) {
+  const SpotCommand c =
+      command_of(box, "orifice -5 0 0 3 orifice 5 0 0 3 injection 300 100 schedule 2 v_gate schedule 1 2 0 threads 2");
+  EXPECT_THAT(c.outlets.variables(), testing::ElementsAre(testing::Pair(1u, "gate")));
+  EXPECT_EQ(c.spots.injection_rate.largest(1), 100.0) << "as for a factor of 1";
+  EXPECT_EQ(c.outlets.text_of_rates(), "300 100; schedule 1 2 0; schedule 2 v_gate");
+  EXPECT_TRUE(command_of(box, "orifice 0 0 0 4 injection 300 schedule 1 0 1").outlets.variables().empty());
+}
+
 TEST(OutletCommand, BirthsFollowTheOutflowThatIsGiven) {
   const SpotCommand c = command_of(box, "orifice -8 0 0 4 orifice 8 0 0 4 outflow 30 10 schedule 2 5 0");
   EXPECT_TRUE(c.spots.holds_outflow);
@@ -177,6 +186,14 @@ TEST(OutletCommand, MistakesAreNamed) {
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 -1 0"), HasSubstr("zero or positive"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 1 -2"), HasSubstr("zero or positive"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 1 0 schedule 1 2 0"), HasSubstr("given twice"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 1 0 schedule 1 v_a"), HasSubstr("given twice"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 v_a schedule 1 v_b"), HasSubstr("given twice"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 2 v_a"), HasSubstr("1 to 1"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 v_"), HasSubstr("'schedule 1 v_' has no name"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 v_a 1 0"),
+              AllOf(HasSubstr("'schedule 1 v_a' goes on"), HasSubstr("either a variable, or")));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 gate"),
+              AllOf(HasSubstr("'gate' is not a finite number"), HasSubstr("'schedule'")));
   EXPECT_THAT(error_of("region silo", "slot 0 0 0 6 8 injection 1"), HasSubstr("'region' takes one round orifice"));
   EXPECT_THAT(error_of("region silo", "orifice -5 0 0 3 orifice 5 0 0 3 injection 1 1"),
               HasSubstr("one round orifice"));

@@ -141,7 +141,7 @@ TEST(SavedRun, PartsOfTheWrongSizeAreRefused) {
 
 /// The beginning of files of versions before and after, of which those up to 4 had no checksum of their header.
 TEST(SavedRun, OtherVersionsAreRefusedWithAdvice) {
-  for (const std::int32_t version : {1, 4, 5, 7, 10, 12, 1000}) {
+  for (const std::int32_t version : {1, 4, 5, 7, 10, 11, 13, 1000}) {
     Bytes bytes = {'s', 'p', 'o', 't', ' ', 'r', 'u', 'n'};
     spot::append(bytes, version);
     if (version >= 5)

@@ -29,6 +29,14 @@ constexpr double least_own_way = 0.01;
 /// Spots born while one climbs a diameter. The fitted parameters have 120.
 constexpr double most_births = 1e7;
 
+void require_births(const SpotParameters& spots, const Injection& rates, double diameter) {
+  const double births = rates.largest() * (diameter / spots.speed);
+  if (!(births <= most_births))
+    throw InvalidParameter(message("spot injection rate is ", rates.largest(), ": ", births,
+                                   " births while a spot climbs one diameter, but at most ", most_births,
+                                   " are allowed"));
+}
+
 void require_steps(const SpotParameters& spots, double diameter) {
   if (!(diameter > 0.0) || !std::isfinite(diameter))
     throw InvalidParameter(message("grain diameter is ", diameter, " but must be positive and finite"));
@@ -42,11 +50,7 @@ void require_steps(const SpotParameters& spots, double diameter) {
   if (spots.nonaffine > 0.0 && !(spots.nonaffine_length >= least_own_way * diameter))
     throw InvalidParameter(message("length of non-affine motion is ", spots.nonaffine_length / diameter,
                                    " diameters but must be at least ", least_own_way));
-  const double births = spots.injection_rate.largest() * (diameter / spots.speed);
-  if (!(births <= most_births))
-    throw InvalidParameter(message("spot injection rate is ", spots.injection_rate.largest(), ": ", births,
-                                   " births while a spot climbs one diameter, but at most ", most_births,
-                                   " are allowed"));
+  require_births(spots, spots.injection_rate, diameter);
   const double step = std::sqrt(spots.step_width * spots.step_width + spots.step_height * spots.step_height);
   const double displacement =
       spots.influence * largest_weight(spots) * (1.0 + NonaffineMotion::largest(spots.nonaffine)) * (step / diameter);
@@ -124,6 +128,13 @@ void Drainage::replace_container(std::shared_ptr<const Container> container) {
   container_ = std::move(container);
   checks_.replace_container(container_);
   take_new_container();
+}
+
+void Drainage::change_rate(std::size_t outlet, double time, double rate) {
+  Injection changed = rates();
+  if (!changed.change(outlet, time, rate)) return;
+  require_births(spots_, changed, diameter_);
+  take_new_rates(time, changed);
 }
 
 void Drainage::change_grains(const GrainChanges& changes) {

@@ -40,24 +40,24 @@ double WindowedDrainage::flow_through_orifice(const SpotParameters& spots, doubl
   return most;
 }
 
-void WindowedDrainage::require_fitting_window() const {
+void WindowedDrainage::require_fitting_window(const SpotParameters& spots) const {
   // Spots that step together carry out in one window what others do in all of the time between steps.
-  const double clock = spot_parameters().together ? std::max(window_, spot_parameters().mean_waiting_time()) : window_;
+  const double clock = spots.together ? std::max(window_, spots.mean_waiting_time()) : window_;
   const auto require = [&](double value, double most, const char* what) {
     if (!(value <= most))
       throw InvalidParameter(message("in a window of ", clock, ' ', value, ' ', what, ", but at most ", most,
                                      " are allowed: shorten the window"));
   };
-  const double climb = clock * (spot_parameters().speed / diameter());
+  const double climb = clock * (spots.speed / diameter());
   if (!(climb >= least_climb))
     throw InvalidParameter(message("in a window of ", clock, " spots climb ", climb, " diameters, but at least ",
                                    least_climb, " are needed: lengthen the window"));
-  const double highest = clock * (spot_parameters().fastest() / diameter());
+  const double highest = clock * (spots.fastest() / diameter());
   require(highest, highest_climb, "diameters are climbed by spots");
-  require(clock * spot_parameters().fastest() / spot_parameters().step_height, most_steps, "steps are taken by a spot");
-  require(clock * spot_parameters().injection_rate.largest(), most_births, "spots are born");
-  require(flow_through_orifice(spot_parameters(), clock, diameter(), container().outlets()),
-          calibration::longest_flow_in_a_window, "diameters pass the orifice");
+  require(clock * spots.fastest() / spots.step_height, most_steps, "steps are taken by a spot");
+  require(clock * spots.injection_rate.largest(), most_births, "spots are born");
+  require(flow_through_orifice(spots, clock, diameter(), container().outlets()), calibration::longest_flow_in_a_window,
+          "diameters pass the orifice");
 }
 
 double WindowedDrainage::moves_between_sweeps_for(const SpotParameters& spots, double tolerance, double diameter) {
@@ -97,7 +97,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       relaxation_(packing_, relaxation),
       moves_(communicator_) {
   BlockMoves::require_radius(spots.radius, diameter);
-  require_fitting_window();
+  require_fitting_window(spots);
   require_valid_start();
   let_settle(true);
   require_dense_start(*communicator_);
@@ -229,6 +229,13 @@ void WindowedDrainage::take_new_container() {
   packing_.require_same_periods(container());
   packing_.mark_near_walls(container());
   spots_.replace_container(container());
+}
+
+void WindowedDrainage::take_new_rates(double time, const Injection& rates) {
+  SpotParameters spots = spot_parameters();
+  spots.injection_rate = rates;
+  require_fitting_window(spots);
+  spots_.set_rates(time, rates);
 }
 
 }  // namespace spot

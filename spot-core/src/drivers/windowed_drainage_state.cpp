@@ -52,7 +52,7 @@ WindowedDrainage::WindowedDrainage(const SpotParameters& spots, const Relaxation
       relaxation_(packing_, relaxation),
       moves_(communicator_) {
   BlockMoves::require_radius(spots.radius, diameter);
-  require_fitting_window();
+  require_fitting_window(spots);
   spots_.take_out_others([this](const Spot& spot) { return here(spot); });
 }
 

@@ -44,6 +44,21 @@ RateSchedule RateSchedule::times(double factor) const {
   return RateSchedule(std::move(steps));
 }
 
+bool RateSchedule::change(double time, double rate) {
+  if (at(time) == rate && next_change(time) == never) return false;
+  while (!steps_.empty() && steps_.back().time >= time) steps_.pop_back();
+  if (steps_.empty())
+    steps_.push_back({0.0, rate});
+  else if (steps_.back().rate != rate)
+    steps_.push_back({time, rate});
+  return true;
+}
+
+void RateSchedule::forget_before(double time) {
+  steps_.erase(steps_.begin(), std::prev(step_after(steps_, time)));
+  steps_.front().time = 0.0;
+}
+
 void RateSchedule::validate(std::size_t outlet) const {
   if (steps_.empty()) throw InvalidParameter(message("outlet ", outlet, " has no spot injection rate"));
   if (steps_.front().time != 0.0)
@@ -92,9 +107,18 @@ double Injection::next_birth(double time, double exponential) const {
       if (birth < change) return birth;
     }
     if (change == never) return never;
-    exponential = std::max(0.0, exponential - rate * (change - time));
+    exponential = left_of(exponential, time, change);
     time = change;
   }
+}
+
+double Injection::left_of(double exponential, double time, double until) const {
+  while (time < until) {
+    const double change = std::min(next_change(time), until);
+    exponential = std::max(0.0, exponential - total(time) * (change - time));
+    time = change;
+  }
+  return exponential;
 }
 
 std::size_t Injection::outlet_of_birth(double time, double uniform) const {
@@ -107,6 +131,32 @@ std::size_t Injection::outlet_of_birth(double time, double uniform) const {
     left -= rate;
   }
   return outlet;
+}
+
+bool Injection::change(std::size_t outlet, double time, double rate) {
+  if (outlet >= outlets_.size())
+    throw InvalidParameter(
+        message("there is no outlet ", outlet + 1, " to change the rate of: they count from 1 to ", outlets_.size()));
+  RateSchedule changed = outlets_[outlet];
+  if (!changed.change(time, rate)) return false;
+  changed.validate(outlet + 1);
+  outlets_[outlet] = std::move(changed);
+  return true;
+}
+
+void Injection::forget_before(double time) {
+  for (RateSchedule& outlet : outlets_) outlet.forget_before(time);
+}
+
+void Injection::save(Bytes& bytes) const {
+  for (const RateSchedule& outlet : outlets_) append(bytes, outlet.steps());
+}
+
+void Injection::restore(ByteReader& saved) {
+  for (RateSchedule& outlet : outlets_) {
+    outlet = RateSchedule(saved.take_all<RateStep>());
+    if (outlet.steps().empty()) throw InvalidState("the saved rates of births are damaged");
+  }
 }
 
 Injection& Injection::operator*=(double factor) {

@@ -24,7 +24,9 @@ OutflowControl::OutflowControl(const SpotParameters& parameters, const Container
       memory_time_(calibration::climb_of_flow_memory * delay_),
       updates_(calibration::climb_between_surfaces * delay_),
       counted_(container.outlets().size(), 0),
-      missing_(container.outlets().size(), 0.0) {}
+      missing_(container.outlets().size(), 0.0) {
+  for (std::size_t k = 0; k < births_.outlets(); ++k) largest_.push_back(births_.largest(k));
+}
 
 /// Volume (1024 = grain_volume).
 double OutflowControl::asked(std::size_t outlet, double from, double until) const {
@@ -38,12 +40,19 @@ bool OutflowControl::update(double now, Communicator& communicator) {
   for (std::size_t k = 0; k < missing_.size(); ++k) {
     missing_[k] += asked(k, updated_, now) - static_cast<double>(found[k]);
     // No more than factors have room for: what an outlet lacked while no grains were above it is not made good.
-    const double most = calibration::largest_outflow_correction * births_.largest(k) * volume_of_birth_ * memory_time_;
+    const double most = calibration::largest_outflow_correction * largest_[k] * volume_of_birth_ * memory_time_;
     missing_[k] = std::clamp(missing_[k], -most, most);
     counted_[k] = 0;
   }
   updated_ = now;
   return true;
+}
+
+void OutflowControl::change(double now, const Injection& births) {
+  births_ = births;
+  // asked() is for what was up to R_s / v_s before the last update.
+  births_.forget_before(on_ ? std::max(0.0, updated_ - delay_) : now);
+  for (std::size_t k = 0; k < largest_.size(); ++k) largest_[k] = std::max(largest_[k], births_.largest(k));
 }
 
 std::vector<double> OutflowControl::factors() const {
@@ -58,6 +67,8 @@ std::vector<double> OutflowControl::factors() const {
 }
 
 void OutflowControl::save(Bytes& bytes) const {
+  births_.save(bytes);
+  append(bytes, largest_);
   if (!on_) return;
   updates_.save(bytes);
   append(bytes, updated_);
@@ -66,6 +77,9 @@ void OutflowControl::save(Bytes& bytes) const {
 }
 
 void OutflowControl::restore(ByteReader& saved, bool counts) {
+  births_.restore(saved);
+  largest_ = saved.take_all<double>();
+  if (largest_.size() != births_.outlets()) throw InvalidState("the saved rates of births are damaged");
   if (!on_) return;
   updates_.restore(saved);
   updated_ = saved.take<double>();

@@ -73,8 +73,12 @@ SpotWalk::SpotWalk(const SpotParameters& parameters, const Container& container)
   container.require_entrance(parameters_.equivalent_radius());
 }
 
+double SpotWalk::births_expected(std::int64_t id) const {
+  return exponential(numbers_of_birth(parameters_, id)[0], 1.0);
+}
+
 double SpotWalk::time_of_birth(std::int64_t id, double time_before) const {
-  return parameters_.injection_rate.next_birth(time_before, exponential(numbers_of_birth(parameters_, id)[0], 1.0));
+  return parameters_.injection_rate.next_birth(time_before, births_expected(id));
 }
 
 Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) const {

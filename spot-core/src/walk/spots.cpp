@@ -13,7 +13,6 @@ namespace spot {
 Spots::Spots(const SpotParameters& parameters, const Container& container, double diameter)
     : walk_(parameters, container),
       outflow_(parameters, container, diameter),
-      next_birth_(walk_.time_of_birth(0, 0.0)),
       dilates_(parameters.dilation > 0.0),
       dilation_(parameters, container, diameter),
       critical_(parameters, diameter),
@@ -23,22 +22,30 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       surfaces_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
       setting_interval_(dilates_ || shears_ || surface_.needed() || outflow_.on()
                             ? calibration::climb_between_settings * parameters.radius / parameters.speed
-                            : 0.0) {}
+                            : 0.0) {
+  await_birth(0.0);
+}
+
+void Spots::await_birth(double from) {
+  next_birth_.await(from, walk_.births_expected(born_), outflow_.births(), outflow_.factors());
+}
 
 /// Returns whether the newborn spot was kept.
 bool Spots::bear_next(const Container& container, const Belongs& here) {
-  Spot spot = walk_.birth(born_, next_birth_, container);
+  const double now = next_birth_.time();
+  Spot spot = walk_.birth(born_, now, container);
   const bool kept = here(spot);
   if (kept) {
-    if (dilates_) walk_.set_relative_speed(spot, next_birth_, dilation_.relative_speed(spot.position));
+    if (dilates_) walk_.set_relative_speed(spot, now, dilation_.relative_speed(spot.position));
     places_.push_back({spot, false});
   }
-  next_birth_ = walk_.time_of_birth(++born_, next_birth_);
+  ++born_;
+  await_birth(now);
   return kept;
 }
 
 void Spots::give_birth(double until, const Container& container, const Belongs& here) {
-  while (next_birth_ <= until) bear_next(container, here);
+  while (next_birth_.time() <= until) bear_next(container, here);
 }
 
 void Spots::set_relative_speeds(double now, Communicator& communicator, Workers& workers) {
@@ -113,7 +120,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container, co
   while (true) {
     if (!queued_) queue_all();
     drop_removed_events();
-    const double event = events_.empty() ? next_birth_ : std::min(next_birth_, events_.front().time);
+    const double event = events_.empty() ? next_birth_.time() : std::min(next_birth_.time(), events_.front().time);
     if (next_setting() <= std::min(event, time)) {
       Alone alone;
       Workers one_thread(1);
@@ -122,7 +129,7 @@ std::optional<Move> Spots::next_step(double time, const Container& container, co
       update_surface(next_setting(), visit_grains, alone);
       follow_outflow(next_setting(), alone);
       ++settings_;
-    } else if (event <= time && event == next_birth_) {
+    } else if (event <= time && event == next_birth_.time()) {
       bear_next(container, [](const Spot&) { return true; });
       queue(places_.size() - 1);
     } else {
@@ -177,6 +184,12 @@ void Spots::follow_outflow(double now, Communicator& communicator) {
   if (outflow_.update(now, communicator)) walk_.set_rates(outflow_.rates());
 }
 
+void Spots::set_rates(double now, const Injection& rates) {
+  next_birth_.change(now, outflow_.births(), rates);
+  outflow_.change(now, rates);
+  walk_.set_rates(outflow_.rates());
+}
+
 void Spots::replace_container(const Container& container) {
   dilation_.replace_container(container);
   flow_.replace_container(container);
@@ -224,7 +237,7 @@ std::vector<Spot> Spots::live() const {
 
 void Spots::save(Bytes& bytes) const {
   append(bytes, born_);
-  append(bytes, next_birth_);
+  next_birth_.save(bytes);
   append(bytes, live());
   append(bytes, settings_);
   surfaces_.save(bytes);
@@ -236,7 +249,7 @@ void Spots::save(Bytes& bytes) const {
 
 void Spots::restore(ByteReader& saved, bool counts) {
   born_ = saved.take<std::int64_t>();
-  next_birth_ = saved.take<double>();
+  next_birth_.restore(saved);
   take_in(take_spots(saved));
   settings_ = saved.take<std::int64_t>();
   surfaces_.restore(saved);

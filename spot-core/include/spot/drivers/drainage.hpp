@@ -43,9 +43,13 @@ class Drainage {
   /// The same, told what all grains are now. On one rank only.
   void replace_grains(const std::vector<Grain>& grains);
 
-  /// Goes on with other walls; grains that are outside them are found by require_inside(). Throws InvalidContainer
-  /// unless there are as many outlets as before.
+  /// Goes on with other walls, which require_inside() holds grains against. Throws InvalidContainer unless there are as
+  /// many outlets as before.
   void replace_container(std::shared_ptr<const Container> container);
+
+  /// From `time` on, which it has been advanced to, an outlet has this many births per time, instead of what was to
+  /// come. Throws InvalidParameter, naming what doesn't fit, and changes nothing then.
+  void change_rate(std::size_t outlet, double time, double rate);
 
   /// Goes on with another number of threads, where the driver has any. Throws InvalidParameter as Workers does.
   virtual void set_threads(int) {}
@@ -59,34 +63,26 @@ class Drainage {
 
   /// All coordinates of grains are multiples of it.
   virtual const Quantum& quantum() const = 0;
-
   virtual std::vector<Spot> spots() const = 0;
   virtual Overlap largest_overlap() = 0;
-
   /// Bytes that packing and spots take on this rank, with all that is kept from one move or window to the next.
   virtual std::size_t memory() const = 0;
-
   /// All that is needed to go on from here with the same bits, walls and parameters apart: the part of this rank.
   virtual Bytes save() const = 0;
-
   /// Counters over all ranks.
   virtual Counters total() { return counters_; }
-
   /// All grains, in increasing order of ids.
   std::vector<Grain> grains() const;
 
   /// Throws InvalidPacking, naming the grain, if one has left the container other than through an outlet.
   void require_inside() const;
-
   /// Of this rank: its spots, its grains; of sweeps, those on all ranks.
   const Counters& counters() const { return counters_; }
 
   /// Grains that left since the last call, where they were then, in increasing order of ids.
   std::vector<Grain> take_drained();
-
   /// Counts from now on how many moves move each grain, which is not free.
   void count_moves_received() { received_.emplace(); }
-
   /// What was counted since the last call, on this rank. A grain that came from another rank has been counted there,
   /// too; grains that have drained meanwhile are among them.
   MovesReceived take_moves_received();
@@ -136,6 +132,10 @@ class Drainage {
   virtual Overlap carry_out(const GrainChanges& changes) = 0;
   /// There are other walls now.
   virtual void take_new_container() = 0;
+  /// Of births.
+  virtual const Injection& rates() const = 0;
+  /// They are others from a time on. Throws InvalidParameter if they are too many.
+  virtual void take_new_rates(double time, const Injection& rates) = 0;
 
   SpotParameters spots_;
   RelaxationParameters relaxation_;

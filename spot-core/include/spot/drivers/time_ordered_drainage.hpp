@@ -45,6 +45,8 @@ class TimeOrderedDrainage : public Drainage {
   void replace_packing(const std::vector<Grain>& grains);
   Overlap carry_out(const GrainChanges& changes) override;
   void take_new_container() override;
+  const Injection& rates() const override { return spots_.rates(); }
+  void take_new_rates(double time, const Injection& rates) override { spots_.set_rates(time, rates); }
   void let_settle(TiledPacking& packing, bool everybody);
   void carry_out(Move move);
   bool relaxes_around(const Move& move) const;

@@ -70,13 +70,15 @@ class WindowedDrainage : public Drainage {
   static double moves_between_sweeps_for(const SpotParameters& spots, double tolerance, double diameter);
   static double positive_window(double window);
   /// Throws InvalidParameter if relaxation could not follow what spots do in a window.
-  void require_fitting_window() const;
+  void require_fitting_window(const SpotParameters& spots) const;
   int owner(const Spot& spot) const { return packing_.owner(spot.position.z()); }
   bool here(const Spot& spot) const { return owner(spot) == communicator_->rank(); }
   std::pair<int, int> reached(const Move& move) const {
     return packing_.reached(move.middle.z(), spot_parameters().radius);
   }
   void take_new_container() override;
+  const Injection& rates() const override { return spots_.rates(); }
+  void take_new_rates(double time, const Injection& rates) override;
   void step_to(double until);
   void displace();
   void weigh(const std::vector<int>& enclosed, std::vector<Move>& moves);

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "spot/base/bytes.hpp"
+
 namespace spot {
 
 /// From `time` on an outlet has this many births per time, until the next step.
@@ -26,6 +28,11 @@ class RateSchedule {
   double births(double from, double until) const;
   const std::vector<RateStep>& steps() const { return steps_; }
   RateSchedule times(double factor) const;
+
+  /// From a time on it is this, instead of all that was to come. Says whether that changes anything.
+  bool change(double time, double rate);
+  /// Nobody will ask for what was before a time: from 0 on it counts as what it is then.
+  void forget_before(double time);
 
   /// Throws InvalidParameter, naming the outlet, unless the first step is at time 0, times increase, and all are finite
   /// and no rate below 0.
@@ -53,6 +60,8 @@ class Injection {
   /// When a birth follows one at `time`, or the start at time 0, for an exponentially distributed number of mean 1:
   /// when the integral of the rates has come to it. Infinite if it never does.
   double next_birth(double time, double exponential) const;
+  /// What is left at `until` of such a number that was drawn for `time`, if there has been no birth.
+  double left_of(double exponential, double time, double until) const;
 
   /// At which outlet a birth at this time is, for a uniform number from 0 to 1.
   std::size_t outlet_of_birth(double time, double uniform) const;
@@ -62,6 +71,16 @@ class Injection {
   double expected_births(std::size_t outlet, double from, double until) const {
     return outlets_[outlet].births(from, until);
   }
+
+  /// From a time on an outlet has this rate, instead of all that was to come. Says whether that changes anything.
+  /// Throws InvalidParameter, naming the outlet, unless there is one and the rate is finite and not negative.
+  bool change(std::size_t outlet, double time, double rate);
+  /// As RateSchedule does.
+  void forget_before(double time);
+
+  void save(Bytes& bytes) const;
+  /// Takes in what save() appended, for as many outlets. Throws InvalidState if it is damaged.
+  void restore(ByteReader& saved);
 
   /// All rates times this.
   Injection& operator*=(double factor);

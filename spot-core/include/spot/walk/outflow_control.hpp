@@ -36,6 +36,11 @@ class OutflowControl {
   /// the times of the calls in it after the first: finds the factors anew. Says whether it has.
   bool update(double now, Communicator& communicator);
 
+  /// nu_s, as it has been so far and is to be.
+  const Injection& births() const { return births_; }
+  /// From `now` on it is something else. All that comes keeps what was.
+  void change(double now, const Injection& births);
+
   /// On nu_s, an outlet each.
   std::vector<double> factors() const;
   /// Of births, from now on.
@@ -50,8 +55,9 @@ class OutflowControl {
   double asked(std::size_t outlet, double from, double until) const;
 
   bool on_;
-  Injection births_;
-  double volume_of_birth_;  // 1024 = grain_volume
+  Injection births_;             // what was long ago is forgotten once it changes
+  std::vector<double> largest_;  // rates of births through time
+  double volume_of_birth_;       // 1024 = grain_volume
   double delay_, memory_time_;
   Recurrence updates_;
   double updated_ = 0.0;               // when it was last

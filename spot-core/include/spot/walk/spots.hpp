@@ -15,6 +15,7 @@
 #include "spot/walk/dilation_field.hpp"
 #include "spot/walk/flow_field.hpp"
 #include "spot/walk/free_surface.hpp"
+#include "spot/walk/next_birth.hpp"
 #include "spot/walk/outflow_control.hpp"
 #include "spot/walk/spot_walk.hpp"
 
@@ -40,10 +41,8 @@ class Spots {
 
   /// Collective. From `now` on all spots climb as fast as the dilation there lets them.
   void set_relative_speeds(double now, Communicator& communicator, Workers& workers);
-
   /// Whom a spot belongs to.
   using Belongs = std::function<bool(const Spot&)>;
-
   /// Births up to and including `until`: every rank sees all of them, and keeps those that belong to it.
   void give_birth(double until, const Container& container, const Belongs& here);
 
@@ -67,7 +66,6 @@ class Spots {
 
   /// Collective. `elapsed` after the last time, spots learn how the flow is sheared now.
   void update_flow(double elapsed, Communicator& communicator);
-
   /// Collective. Spots learn where the free surface is now, if they have to know: once in each interval in which a spot
   /// at v_s climbs calibration::climb_between_surfaces, whatever the times of the calls in it after the first.
   void update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator);
@@ -76,10 +74,12 @@ class Spots {
   void count_drained(std::size_t outlet, std::int64_t volume) { outflow_.count(outlet, volume); }
   /// Collective. Births follow what has left until now.
   void follow_outflow(double now, Communicator& communicator);
-
+  /// Of births, as it was and is to be; what is asked for, where births follow the outflow.
+  const Injection& rates() const { return outflow_.births(); }
+  /// From `now` on, which all births have come up to, it is something else.
+  void set_rates(double now, const Injection& rates);
   /// There is nothing left above the spot. One that is gone already may be named again.
   void remove(std::int64_t spot);
-
   /// Takes out the spots that do not belong here.
   std::vector<Spot> take_out_others(const Belongs& here);
   void take_in(const std::vector<Spot>& spots);
@@ -87,7 +87,6 @@ class Spots {
   /// In order of birth.
   std::vector<Spot> live() const;
   std::int64_t born() const { return born_; }
-
   /// Other walls; the spots stay.
   void replace_container(const Container& container);
 
@@ -117,6 +116,7 @@ class Spots {
     std::vector<std::pair<std::size_t, std::size_t>> ends;  // places of spots, and the ends of their moves
   };
 
+  void await_birth(double from);
   bool bear_next(const Container& container, const Belongs& here);
   std::vector<Place>::iterator find(std::int64_t spot);
   void queue_all();
@@ -130,7 +130,7 @@ class Spots {
   std::size_t removed_ = 0;
   std::vector<Stepped> stepped_;  // kept to save allocations
   OutflowControl outflow_;
-  double next_birth_;
+  NextBirth next_birth_;
   std::int64_t born_ = 0;
   bool dilates_;
   DilationField dilation_;
