@@ -34,20 +34,32 @@ everything >/tmp/before
 echo "== apt-get install"
 quietly apt-get install -y --no-install-recommends "$deb"
 
-as_user() { echo "\$ $1"; runuser -u user -- env HOME=/home/user bash -eo pipefail -c "cd ~ && $1" 2>&1; }
+# as_user COMMAND [FILTER ...] prints what the filter leaves, or everything, should the command or the filter fail.
+as_user() {
+  local command=$1
+  shift
+  [ $# -gt 0 ] || set -- cat
+  echo "\$ $command"
+  if ! runuser -u user -- env HOME=/home/user bash -eo pipefail -c "cd ~ && $command" >/tmp/output 2>&1 || ! "$@" /tmp/output; then
+    cat /tmp/output
+    echo "package_try: '$command' failed, or printed other than expected" >&2
+    exit 1
+  fi
+}
+log='^ *Step '  # LAMMPS of Debian 13 indents it
 as_user "cp -r $share/examples/silo . && ls silo"
-as_user "cd silo && lmp -in in.silo_spot -var time 0.06 | tee run.log | grep -A9 '^Step'"
+as_user "cd silo && lmp -in in.silo_spot -var time 0.06" grep -A3 "$log"
 as_user "cd silo && python3 $here/compare_checksums.py dumps.sha256 post"
-as_user "cd silo && /usr/libexec/spot-drainage/lmp -in in.silo_spot -var time 0.06 -var out again >again.log"
+as_user "cd silo && /usr/libexec/spot-drainage/lmp -in in.silo_spot -var time 0.06 -var out again" grep -A3 "$log"
 as_user "cd silo && python3 $here/compare_checksums.py dumps.sha256 again"
 as_user "cd silo && spot-compare reference/dem-statistics.npz post -o report && ls report"
 as_user "cd silo && spot-measure post -o spot.npz"
 as_user "cd silo && spot-render spot=post --times 0 2 -o silo.png && ls -s silo.png"
-as_user "cd silo && spot-calibrate --help | head -1"
+as_user "cd silo && spot-calibrate --help" head -1
 as_user "cp $share/examples/own-hopper/packing.data.gz ."
 as_user "spot-import packing.data.gz --fit cone-and-cylinder --orifice 0.012 --outflow 5700 -o own"
 as_user "cd own && spot-check in.spot"
-as_user "cd own && sed -i 's/^run .*/run 4/' in.spot && lmp -in in.spot | grep -A2 '^Step'"
+as_user "cd own && sed -i 's/^run .*/run 4/' in.spot && lmp -in in.spot" grep -A2 "$log"
 as_user "python3 -c 'import spotcore; print(spotcore.__version__)'"
 
 echo "== apt-get purge"
