@@ -49,7 +49,7 @@ const spot::WalledContainer& space() {
 }
 
 double memory_time(const SpotParameters& spots) {
-  return spot::calibration::climb_of_outflow_memory * spots.radius / spots.speed;
+  return spot::calibration::climb_of_flow_memory * spots.radius / spots.speed;
 }
 
 /// Through two outlets, of which each lets out this share of what births carry. Returns the grains that left in the
@@ -85,7 +85,7 @@ TEST(OutflowControlUnit, NothingIsChangedWhereItIsOff) {
 TEST(OutflowControlAnalytic, OutflowComesToWhatIsAskedForAndBirthsToThatOverTheShareThatLeaves) {
   const SpotParameters spots = spots_at(two_outlets({{0.0, 0.5 * rate}}));
   OutflowControl control(spots, space(), 1.0);
-  const double counted = interval * std::round(25.0 * memory_time(spots) / interval), end = 3.0 * counted;
+  const double end = 30.0 * memory_time(spots), counted = 10.0 * memory_time(spots);
   const auto grains = deliver(control, spots, {0.9, 0.75}, 0.0, end, counted);
   const double asked = rate * spots.influence * spots.fixed_volume * counted;
   EXPECT_NEAR(grains[0], asked, 2.0 + 1e-3 * asked);

@@ -21,7 +21,7 @@ OutflowControl::OutflowControl(const SpotParameters& parameters, const Container
       volume_of_birth_(parts_of_grain * parameters.missing_volume(diameter) /
                        (pi / 6.0 * diameter * diameter * diameter)),
       delay_(parameters.radius / parameters.speed),
-      memory_time_(calibration::climb_of_outflow_memory * delay_),
+      memory_time_(calibration::climb_of_flow_memory * delay_),
       updates_(calibration::climb_between_surfaces * delay_),
       counted_(container.outlets().size(), 0),
       missing_(container.outlets().size(), 0.0) {

@@ -33,11 +33,6 @@ constexpr double climb_between_surfaces = 0.5;
 /// the flow of a silo changes its shape.
 constexpr double climb_of_flow_memory = 10.0;
 
-/// While a spot at v_s climbs so many R_s, births make good all but 1 / e of what an outlet lacks: 5.6 tau with the
-/// fitted parameters. A choice: what leaves shows some 1.25 R_s / v_s late what was born, and a loop with that delay
-/// swings unless it takes 2.7 times as long (its delay over its time at most 1 / e).
-constexpr double climb_of_outflow_memory = 4.0;
-
 /// Births follow the outflow by half of their rate at most. A choice: DEM's narrowest orifice, 6.5 d wide, needs 1.07.
 constexpr double largest_outflow_correction = 0.5;
 

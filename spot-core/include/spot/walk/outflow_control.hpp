@@ -21,7 +21,7 @@ namespace spot {
 ///     nu_s (1 + M / (F T)),  but at 1 / 2 to 3 / 2 of nu_s.
 ///
 /// So M goes to a constant within T, and the outflow to F, with no overshoot. A spot delivers its volume on its way
-/// through the outlet, so F is that of R_s / v_s before. T is calibration::climb_of_outflow_memory R_s / v_s.
+/// through the outlet, so F is that of R_s / v_s before. T is calibration::climb_of_flow_memory R_s / v_s.
 class OutflowControl {
  public:
   /// `diameter`: the reference diameter.
