@@ -247,7 +247,7 @@ TEST(ChangedRatesUnit, OutflowControlRemembersWhatItAsksForLater) {
     told.change(now.time, births);
     for (spot::OutflowControl* control : {&known, &told}) {
       control->update(now.time, alone);
-      control->count(1, 30 * 1024);
+      control->count(1, 3 * 1024);
     }
     ASSERT_EQ(told.factors(), known.factors()) << now.time;
   }

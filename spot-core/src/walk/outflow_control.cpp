@@ -41,7 +41,7 @@ bool OutflowControl::update(double now, Communicator& communicator) {
     missing_[k] += asked(k, updated_, now) - static_cast<double>(found[k]);
     // No more than factors have room for: what an outlet lacked while no grains were above it is not made good.
     const double most = calibration::largest_outflow_correction * largest_[k] * volume_of_birth_ * memory_time_;
-    missing_[k] = std::clamp(missing_[k], -most, most);
+    missing_[k] = std::clamp(missing_[k], 0.0, most);
     counted_[k] = 0;
   }
   updated_ = now;
@@ -60,8 +60,7 @@ std::vector<double> OutflowControl::factors() const {
   for (std::size_t k = 0; k < factors.size(); ++k) {
     const double rate = births_.at(k, updated_) * volume_of_birth_;
     if (rate > 0.0)
-      factors[k] += std::clamp(missing_[k] / (rate * memory_time_), -calibration::largest_outflow_correction,
-                               calibration::largest_outflow_correction);
+      factors[k] += std::min(missing_[k] / (rate * memory_time_), calibration::largest_outflow_correction);
   }
   return factors;
 }

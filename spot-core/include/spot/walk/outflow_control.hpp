@@ -18,9 +18,10 @@ namespace spot {
 /// of its volume is lost, some 2 % at an outlet 8 grains wide and 6 % at one of 6.5. What is missing, M, grows by
 /// F - F_found, and spots are born at
 ///
-///     nu_s (1 + M / (F T)),  but at 1 / 2 to 3 / 2 of nu_s.
+///     nu_s (1 + M / (F T)),  but at 1 to 3 / 2 of nu_s.
 ///
-/// So M goes to a constant within T, and the outflow to F, with no overshoot. A spot delivers its volume on its way
+/// So M goes to a constant within T, and the outflow to F, with no overshoot. M is never below 0: an outlet loses
+/// volume and gains none, and what is over it when it opens leaves at once and would be paid back for T. A spot delivers its volume on its way
 /// through the outlet, so F is that of R_s / v_s before. T is calibration::climb_of_flow_memory R_s / v_s.
 class OutflowControl {
  public:
