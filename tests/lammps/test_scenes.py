@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""examples/periodic-slot and examples/two-outlets, a short stretch of each, on their real packings."""
+"""examples/periodic-slot, examples/two-outlets and examples/benchmark-silo, a short stretch of each, on their real packings."""
 
+import json
 import os
 import subprocess
 
 import numpy as np
 import pytest
+import zstandard
 
 from lammps_runs import FRONT_END, PLUGIN, ROOT, read_dump
 
@@ -35,3 +37,13 @@ def test_outlets_open_and_close(tmp_path, first, second, gone_from):
     gone = ~np.isin(frames[0]["id"], frames[-1]["id"])
     assert np.count_nonzero(gone) > 50
     assert sorted(set(np.sign(frames[0]["x"][gone]))) == gone_from
+
+
+def test_the_communitys_silo_is_a_hopper_of_other_numbers(tmp_path):
+    out = tmp_path / "out"
+    run_deck("benchmark-silo", "in.benchmark_silo", out, time=0.05)
+    scene = json.loads((out / "scene.json").read_text())
+    assert scene["cylinder_radius"] == pytest.approx(0.1) and scene["orifice_radius"] == pytest.approx(0.03)
+    assert scene["cone_height"] == pytest.approx(0.0554222, rel=1e-5) and scene["grains"] == 40000
+    left = int(zstandard.open(out / "drain.4.dump.zst", "rb").read().split(b"\n")[3])
+    assert 40000 - left == pytest.approx(438.9 * 2, rel=0.25)  # in 2 tau, the first of which only begins
