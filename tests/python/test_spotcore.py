@@ -174,7 +174,7 @@ def test_parameters_of_glass_beads_are_those_that_decks_include():
             "speed": p.speed, "critical": p.critical_fraction, "exchange": p.exchange_length, "dilatancy": p.dilatancy, "spread": p.spread,
             "wall_shear": p.wall_shear, "surface": p.surface_exponent, "nonaffine": p.nonaffine, "own_way": p.nonaffine_length,
             "closing_gap": p.closing_gap, "closing_share": p.closing_share}
-    assert set(deck) - set(same) == {"profile", "spots_a_grain"}
+    assert set(deck) - set(same) == {"profile"}
     for name, value in same.items():
         assert float(deck[name]) == pytest.approx(value, rel=1e-12), name
 
