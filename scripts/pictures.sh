@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 
-all=(silo own-hopper hoppers bidisperse periodic-slot two-outlets pebble-bed python)
+all=(silo own-hopper hoppers benchmark-silo bidisperse periodic-slot two-outlets pebble-bed python)
 case "${1:-}" in
   -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
@@ -58,6 +58,13 @@ pictures_of_hoppers() {
   analysis hopper $here/dem-60.json $runs/60-{1,2,3} --plot $here/profiles-60.png
 }
 
+pictures_of_benchmark-silo() {
+  local runs=results/pictures/benchmark-silo here=examples/benchmark-silo
+  for seed in 1 2 3; do drain benchmark-silo $seed -var seed $seed; done
+  analysis hopper $here/dem-60.json $runs/{1,2,3} --from 6 --to 24 --plot $here/profiles.png
+  render DEM=$here/dem.npz spot=$runs/1 --times 6 14 24 --height 330 -o $here/silo.png
+}
+
 pictures_of_bidisperse() {
   local runs=results/pictures/bidisperse here=examples/bidisperse dem=liggghts-inputs/silo/post/mixture/drain
   for seed in 1 2 3; do drain bidisperse $seed -var ratio 2 -var critical 0.655 -var seed $seed; done
@@ -88,7 +95,7 @@ pictures_of_pebble-bed() {
   local runs=results/pictures/pebble-bed here=examples/pebble-bed
   drain pebble-bed 1
   "$python" -B $here/residence.py $runs/1 -o $here/residence.png >/dev/null
-  render spot=$runs/1 --diameter 0.06 --layer 5 --slice -1 1 --times 0 196 396 796 -o $here/bed.png
+  render spot=$runs/1 --diameter 0.06 --layer 5 --slice -1 1 --times 0 196 396 796 --height 440 -o $here/bed.png
 }
 
 pictures_of_python() {
