@@ -259,7 +259,9 @@ Bytes later(const Bytes& saved, std::int64_t steps, std::int64_t spots, std::int
   counters.moves += steps;
   spot::append(bytes, counters);
   shift(spots);
-  shift(time);
+  for (int k = 0; k < 2; ++k) shift(time);         // of the next birth, and since when it is awaited
+  shift(0.0);                                      // births that were expected then
+  spot::append(bytes, reader.take_all<double>());  // factors on rates
   for (auto n = shift(std::uint64_t{0}); n > 0; --n) {
     shift(spots);
     shift(steps);
@@ -276,7 +278,9 @@ Bytes later(const Bytes& saved, std::int64_t steps, std::int64_t spots, std::int
   EXPECT_EQ(shift(std::uint64_t{0}), 0u) << "steps that the flow has not taken in";
   for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // and of the surface
   spot::append(bytes, reader.take_all<double>());
-  spot::append(bytes, reader.take_all<char>());
+  spot::append(bytes, reader.take_all<spot::RateStep>());  // of births, at the one outlet
+  spot::append(bytes, reader.take_all<double>());          // the largest
+  spot::append(bytes, reader.take_all<char>());            // the packing
   EXPECT_TRUE(reader.at_end());
   spot::seal(bytes);
   return bytes;
