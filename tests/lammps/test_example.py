@@ -78,7 +78,7 @@ def test_threads(snapshots, tmp_path):
 def test_silo_out_of_sample(tmp_path):
     """What analysis/one_material.py does to the deck: another packing, narrower walls and orifice."""
     out = tmp_path / "out"
-    dumps = run_example(FRONT_END, out, time=0.035, packing="out-of-sample/packing.data.gz", half_width=16, orifice=6.5, births=193)
+    dumps = run_example(FRONT_END, out, time=0.035, packing="out-of-sample/packing.data.gz", half_width=16, orifice=6.5, outflow=22)
     scene = json.loads((out / "scene.json").read_text())
     assert scene["grains"] == 18000 and scene["half_width_x"] == pytest.approx(0.048)
     assert scene["orifice_radius"] == pytest.approx(3.25 * 0.003)
