@@ -158,12 +158,13 @@ WindowedDrainage drainage(const Start& start, const std::shared_ptr<spot::Commun
 double birth_time() {
   constexpr int births = 100000;
   const auto container = silo();
-  const spot::SpotWalk walk(spot_parameters(), *container);
+  const spot::SpotParameters spots = spot_parameters();
+  const spot::SpotWalk walk(spots, *container);
   const double start = processor_time();
   double time = 0.0, height = 0.0;
   for (int birth = 0; birth < births; ++birth) {
     height += walk.birth(birth, time, *container).position.z();
-    time = walk.time_of_birth(birth, time);
+    time = spots.injection_rate.next_birth(time, walk.births_expected(birth));
   }
   return height < 0.0 ? (processor_time() - start) / births : 0.0;
 }

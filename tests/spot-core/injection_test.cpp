@@ -52,7 +52,7 @@ std::vector<Birth> births(const Injection& injection, std::uint64_t seed, double
   const SpotWalk walk(spots, space);
   std::vector<Birth> all;
   double time = 0.0;
-  for (std::int64_t id = 0; (time = walk.time_of_birth(id, time)) <= end; ++id) {
+  for (std::int64_t id = 0; (time = injection.next_birth(time, walk.births_expected(id))) <= end; ++id) {
     const spot::Vector3 place = walk.birth(id, time, space).position;
     std::size_t outlet = 0;
     while (outlet < outlets.size() && outlets[outlet].distance(place) > -spots.radius + 1e-12) ++outlet;

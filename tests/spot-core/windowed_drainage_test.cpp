@@ -76,7 +76,11 @@ class PlainWindows {
         critical_(spots, 1.0),
         flow_(spots, *silo_, 1.0),
         surface_(spots, *silo_, 1.0),
-        next_birth_(walk_.time_of_birth(0, 0.0)) {}
+        next_birth_(time_of_birth(0, 0.0)) {}
+
+  double time_of_birth(std::int64_t id, double time_before) const {
+    return spots_.injection_rate.next_birth(time_before, walk_.births_expected(id));
+  }
 
   void advance_by_a_window() {
     const double now = windows_ * window_, until = ++windows_ * window_;
@@ -91,7 +95,7 @@ class PlainWindows {
       if (spots_.dilation > 0.0) walk_.set_relative_speed(spot, time, field.relative_speed(spot.position));
     };
     for (Live& live : live_) set_speed(live.spot, now);
-    for (; next_birth_ <= until; next_birth_ = walk_.time_of_birth(++born_, next_birth_)) {
+    for (; next_birth_ <= until; next_birth_ = time_of_birth(++born_, next_birth_)) {
       live_.push_back({walk_.birth(born_, next_birth_, *silo_), false});
       set_speed(live_.back().spot, next_birth_);
     }

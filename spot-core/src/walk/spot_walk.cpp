@@ -77,10 +77,6 @@ double SpotWalk::births_expected(std::int64_t id) const {
   return exponential(numbers_of_birth(parameters_, id)[0], 1.0);
 }
 
-double SpotWalk::time_of_birth(std::int64_t id, double time_before) const {
-  return parameters_.injection_rate.next_birth(time_before, births_expected(id));
-}
-
 Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) const {
   const auto numbers = numbers_of_birth(parameters_, id);
   const Outlet& outlet = container.outlets()[parameters_.injection_rate.outlet_of_birth(time, numbers[3])];

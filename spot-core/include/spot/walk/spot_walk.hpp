@@ -44,12 +44,8 @@ class SpotWalk {
   /// InvalidContainer if the spots cannot enter.
   SpotWalk(const SpotParameters& parameters, const Container& container);
 
-  /// Of spot `id`: births that are expected from the one before it up to its own, exponentially distributed, mean 1.
+  /// Of spot `id`: births that are expected from the one before it, or time 0, up to its own: they are Poisson.
   double births_expected(std::int64_t id) const;
-
-  /// When spot `id` is born, after the birth before it or after time 0: births are Poisson at rate nu_s. Infinite if
-  /// there are none any more.
-  double time_of_birth(std::int64_t id, double time_before) const;
 
   Spot birth(std::int64_t id, double time, const Container& container) const;
 
