@@ -8,7 +8,7 @@ from spotcore import Outlet, Packing, Parameters, Shape, Walls
 d, tau = 0.003, (0.003 / 9.81) ** 0.5  # m, s
 start = np.loadtxt("../own-hopper/packing.data.gz", skiprows=11, usecols=(4, 5, 6))
 hopper = Shape.cone((0, 0, 0), 0.012, (0, 0, 0.045), 0.03) | Shape.cylinder((0, 0, 0.045), (0, 0, 0.2), 0.03)
-outlet = Outlet.round((0, 0, 0), 0.012, births=8.8 * 5700)  # as in in.own: 5,700 grains leave in a second
+outlet = Outlet.round((0, 0, 0), 0.012, outflow=5700.0)  # grains a second, as in in.own
 drainage = spotcore.drain(Packing(start, d / 2), Walls.inside(hopper), [outlet],
                           Parameters.glass_beads(d, tau), 20 * tau)
 left = drainage.packing
