@@ -15,7 +15,7 @@ using spot::message;
 namespace {
 
 constexpr char magic[8] = {'s', 'p', 'o', 't', ' ', 'r', 'u', 'n'};
-constexpr std::int32_t version = 12;
+constexpr std::int32_t version = saved_run_version;
 
 /// What the state of a run begins with. Magic and version stand where they stood in version 1 and always will.
 struct Header {

@@ -2,6 +2,7 @@
 #ifndef SPOT_SAVED_RUN_H
 #define SPOT_SAVED_RUN_H
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -9,6 +10,9 @@
 
 #include "grain_sizes.h"
 #include "spot/parallel/communicator.hpp"
+
+/// Of the format of what the fix puts into a restart file, which no other version reads.
+inline constexpr std::int32_t saved_run_version = 12;
 
 /// What the fix puts into a restart file of LAMMPS.
 struct SavedRun {
