@@ -24,6 +24,7 @@
 #include "recirculation.h"
 #include "region_container.h"
 #include "saved_run.h"
+#include "scene_file.h"
 #include "spot/base/errors.hpp"
 #include "spot/base/memory.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
@@ -622,10 +623,31 @@ void FixSpot::setup(int) {
     }
     write_grains({}, false);
     remember_grains();
+    if (model->command.scene) write_scene();
   } catch (const spot::Error &e) {
     fail(e);
   }
   list_spots();
+}
+
+/// For the analysis of the dumps, again at the start of each run, in which the timestep may be another one.
+void FixSpot::write_scene() {
+  const SceneCommand &scene = *model->command.scene;
+  const std::int64_t drained = model->recirculation ? 0 : model->drainage->total().drained;
+  const double clock = static_cast<double>(model->windows) * model->window;
+  const SceneOfDumps dumps{model->command,
+                           model->sizes.mean(),
+                           scene.gravity,
+                           update->dt,
+                           static_cast<double>(update->ntimestep) * update->dt - clock,
+                           static_cast<std::int64_t>(atom->natoms) + drained};
+  std::int64_t failed = 0;
+  if (comm->me == 0) {
+    std::ofstream file(scene.file);
+    if (!(file << describe(dumps)).flush()) failed = 1;
+  }
+  if (model->ranks->sum(failed) > 0)
+    throw spot::InvalidParameter(message("'scene' cannot write ", scene.file, ": its folder must be there"));
 }
 
 /// One pass over this rank's grains, in the order in which LAMMPS has them.

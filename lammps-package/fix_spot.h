@@ -59,6 +59,7 @@ class FixSpot : public Fix {
 
   void check_run();
   void dry_run();
+  void write_scene();
   void check_grains();
   void measure_grains();
   void choose_window();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "shaped_walls.h"
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -19,6 +20,7 @@ namespace {
 struct BoundedSolid {
   Solid solid;
   Vector3 low, high;
+  std::optional<ShapedWalls::Upright> upright = std::nullopt;
 };
 
 Vector3 read_vector(Words& words, const char* x, const char* y, const char* z) {
@@ -47,11 +49,13 @@ struct Axis {
     return place;
   }
 
-  /// From `low` to `high` along it, and up to a radius around it.
-  BoundedSolid bounded(const Solid& solid, double low, double high, double radius) const {
-    Vector3 around = Vector3::Constant(radius);
+  /// From `low` to `high` along it, where it has these radii.
+  BoundedSolid bounded(const Solid& solid, double low, double high, double radius_low, double radius_high) const {
+    Vector3 around = Vector3::Constant(std::max(radius_low, radius_high));
     around[along] = 0.0;
-    return {solid, at(low) - around, at(high) + around};
+    BoundedSolid all{solid, at(low) - around, at(high) + around};
+    if (along == 2) all.upright = ShapedWalls::Upright{c1, c2, low, high, radius_low, radius_high};
+    return all;
   }
 };
 
@@ -74,7 +78,7 @@ BoundedSolid read_cylinder(Words& words) {
   const Axis axis(words);
   const double radius = words.positive("the cylinder's radius"), low = words.number("lo"), high = words.number("hi");
   require_increasing("cylinder", low, high);
-  return axis.bounded(spot::cylinder_between(axis.at(low), axis.at(high), radius), low, high, radius);
+  return axis.bounded(spot::cylinder_between(axis.at(low), axis.at(high), radius), low, high, radius, radius);
 }
 
 BoundedSolid read_cone(Words& words) {
@@ -83,8 +87,8 @@ BoundedSolid read_cone(Words& words) {
                radius_high = words.not_negative("the cone's radius at hi"), low = words.number("lo"),
                high = words.number("hi");
   require_increasing("cone", low, high);
-  return axis.bounded(spot::cone_between(axis.at(low), radius_low, axis.at(high), radius_high), low, high,
-                      std::max(radius_low, radius_high));
+  return axis.bounded(spot::cone_between(axis.at(low), radius_low, axis.at(high), radius_high), low, high, radius_low,
+                      radius_high);
 }
 
 BoundedSolid read_sphere(Words& words) {
@@ -116,7 +120,19 @@ void ShapedWalls::read(Words& words) {
     low_ = shapes_.empty() ? shape.low : low_.cwiseMin(shape.low);
     high_ = shapes_.empty() ? shape.high : high_.cwiseMax(shape.high);
   }
-  shapes_.push_back({add, shape.solid, shape.low, shape.high, words.text_since(first)});
+  shapes_.push_back({add, shape.solid, shape.low, shape.high, shape.upright, words.text_since(first)});
+}
+
+const ShapedWalls::Upright* ShapedWalls::cone_under_cylinder() const {
+  if (shapes_.size() != 2) return nullptr;
+  const Shape &below = shapes_[0], &above = shapes_[1];
+  if (!above.add || !below.upright || !above.upright) return nullptr;
+  const Upright &cone = *below.upright, &cylinder = *above.upright;
+  const double slack = 1e-9 * cone.radius_high;
+  const auto same = [slack](double a, double b) { return std::abs(a - b) <= slack; };
+  const bool fits = cone.x == cylinder.x && cone.y == cylinder.y && same(cone.high, cylinder.low) &&
+                    same(cone.radius_high, cylinder.radius_low) && same(cylinder.radius_low, cylinder.radius_high);
+  return fits && cone.radius_low < cone.radius_high ? &cone : nullptr;
 }
 
 Solid ShapedWalls::solid(const spot::Periodic& periodic) const {

@@ -2,6 +2,7 @@
 #ifndef SPOT_SHAPED_WALLS_H
 #define SPOT_SHAPED_WALLS_H
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ class Words;
 /// written as those of LAMMPS' region command.
 class ShapedWalls {
  public:
+  /// A cone, or a cylinder, about a vertical axis; places of its ends, and its radii there.
+  struct Upright {
+    double x, y, low, high, radius_low, radius_high;
+  };
+
   /// Reads what follows keyword `walls`. Throws spot::InvalidParameter that names the offending word and what is
   /// allowed, and spot::InvalidContainer for numbers that make no shape.
   void read(Words& words);
@@ -25,6 +31,10 @@ class ShapedWalls {
   const spot::Vector3& low() const { return low_; }
   const spot::Vector3& high() const { return high_; }
 
+  /// The cone, if all there is are one that widens upwards and a cylinder on top, as wide and about the same axis; or
+  /// none.
+  const Upright* cone_under_cylinder() const;
+
   /// As they were read.
   std::string text() const;
 
@@ -33,6 +43,7 @@ class ShapedWalls {
     bool add;  // or cut
     spot::Solid solid;
     spot::Vector3 low, high;  // no place of it is beyond these
+    std::optional<Upright> upright;
     std::string text;
   };
   std::vector<Shape> shapes_;

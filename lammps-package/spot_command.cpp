@@ -179,6 +179,11 @@ const std::map<std::string, Reader>& readers() {
          c.spots.nonaffine_length = w.positive("the length of non-affine motion");
        }},
       {"recirculate", read_recirculation},
+      {"scene",
+       [](SpotCommand& c, Words& w) {
+         const std::string file = w.value("the name of a file");
+         c.scene = SceneCommand{file, w.positive("the acceleration of gravity")};
+       }},
       {"threads", [](SpotCommand& c, Words& w) { c.threads = to_int(w.integer("the number of threads", 1)); }},
       {"shell", [](SpotCommand& c, Words& w) { c.relaxation.shell = w.not_negative("the shell, in diameters"); }},
       {"overlap", [](SpotCommand& c,

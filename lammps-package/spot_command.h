@@ -40,6 +40,12 @@ struct RecirculationCommand {
   std::string text() const;
 };
 
+/// `scene FILE g`: a file that tells the analysis what dumps do not say.
+struct SceneCommand {
+  std::string file;
+  double gravity;
+};
+
 /// What a `fix ID group spot ...` command says, in the units of the deck. Where a length or a time was not
 /// given, it is empty and follows from the grain diameter or the timestep, see resolve().
 struct SpotCommand {
@@ -56,7 +62,8 @@ struct SpotCommand {
   std::optional<double> outlet;  // height below which grains are removed
   std::optional<double> side_buffer, base_buffer;
   std::optional<double> window;
-  std::optional<RecirculationCommand> recirculation;                     // none: grains that have drained are gone
+  std::optional<RecirculationCommand> recirculation;  // none: grains that have drained are gone
+  std::optional<SceneCommand> scene;
   double largest_overlap = spot::calibration::largest_overlap_at_start;  // in diameters
   int average = 100;                                                     // steps over which the outflow is averaged
   bool per_atom = false;                                                 // output of what has become of each grain

@@ -43,8 +43,7 @@ pictures_of_own-hopper() {
   rm -rf "$hopper"
   mkdir -p "$hopper"
   (cd examples/own-hopper && ../../build/bin/lmp -in in.own -log "../../$hopper/log.lammps" -screen none &&
-    mv drain.*.dump "../../$hopper")
-  cp examples/own-hopper/scene.json "$hopper"
+    mv drain.*.dump scene.json "../../$hopper")
   render DEM=examples/own-hopper/dem.npz spot=$hopper --times 20 40 60 --height 420 -o docs/pictures/hopper.png
 }
 

@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the fix says: grains that leave, velocities, the global vector, the spots."""
 
+import json
 import re
+import sys
 
 import numpy as np
 import pytest
 
-from lammps_runs import (FIX, HALF_DEPTH, HALF_WIDTH, LOAD_SPOT, ROOT, deck, lattice, positions, programs, read_dump, run_ok, thermo,
-                         write_data)
+from lammps_runs import (FIX, HALF_DEPTH, HALF_WIDTH, LOAD_SPOT, ORIFICE, ROOT, deck, error_of, lattice, needs_mpirun, on_ranks,
+                         positions, programs, read_dump, run_ok, thermo, write_data)
+
+sys.path.insert(0, str(ROOT / "analysis"))
+from spot_analysis.reading.scene import load_scene  # noqa: E402
 
 # f_drain[1] to f_drain[8]
 SPOTS, MOVES, DRAINED, MASS, OUTFLOW, OVERLAP, SWEEPS, LEFT = (f"f_drain[{k}]" for k in range(1, 9))
@@ -209,3 +214,33 @@ def test_memory_usage(tmp_path, words):
     held, said = (a - b for a, b in zip(megabytes(tmp_path, f"fix drain all spot {silo} {words}"), without))
     assert held > 5
     assert said == pytest.approx(held, rel=0.1)
+
+
+def scene(folder):
+    return json.loads((folder / "scene.json").read_text())
+
+
+@needs_mpirun
+def test_the_scene_is_that_of_the_analysis(tmp_path):
+    """On ranks, too; the second run has fewer grains, but the scene is that of the start."""
+    run_ok(deck(fix=FIX + " scene scene.json 9.75", run="run 30\nrun 10"), tmp_path, launcher=on_ranks(2))
+    found = load_scene(str(tmp_path))
+    assert (found.diameter, found.gravity, found.timestep) == (1, 9.75, 0.1)
+    assert (found.half_width_x, found.half_depth_y, found.orifice_radius) == (HALF_WIDTH, HALF_DEPTH, ORIFICE)
+    assert found.grains == len(lattice()) and found.opening_time == 0
+
+
+def test_the_scene_counts_time_from_the_first_step_of_the_fix(tmp_path):
+    run_ok(deck(before="reset_timestep 50", fix=FIX + " scene scene.json 1", run="run 10\nwrite_restart saved"), tmp_path)
+    assert scene(tmp_path)["opening_time"] == pytest.approx(5)
+    (tmp_path / "scene.json").unlink()
+    run_ok(f"units lj\natom_style sphere\nboundary f f f\ninclude {LOAD_SPOT}\nread_restart saved\ntimestep 0.1\n"
+           f"{FIX} scene again.json 1\nrun 10\n", tmp_path)
+    assert not (tmp_path / "scene.json").exists()
+    again = json.loads((tmp_path / "again.json").read_text())
+    assert again["opening_time"] == pytest.approx(5) and again["grains"] == len(lattice())
+
+
+def test_a_scene_that_cannot_be_written_is_named(tmp_path):
+    said = error_of(deck(fix=FIX + " scene nowhere/scene.json 1"), tmp_path)
+    assert "'scene' cannot write nowhere/scene.json: its folder must be there" in said

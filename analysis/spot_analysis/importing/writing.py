@@ -22,7 +22,7 @@ include   {folder}/glass-beads.lmp   # sets beads: all of the spot model's numbe
 read_data {data}
 fix       drain all spot {fix} &
           orifice {orifice} &
-          {rate} ${{beads}}
+          {rate} ${{beads}} scene scene.json ${{g}}
 timestep  $(0.5*v_tau)
 thermo_style custom step atoms f_drain[1] f_drain[5] f_drain[6]   # spots, outflow, largest overlap
 thermo    20
