@@ -29,10 +29,16 @@ void expect_looser_at_rest(const spot::InvalidParameter& error) {
                                            testing::HasSubstr("the packing at rest has 0.")));
 }
 
+#ifdef SPOT_SANITIZED
+constexpr std::uint64_t scenes_in_ci = 16;
+#else
+constexpr std::uint64_t scenes_in_ci = 60;
+#endif
+
 /// Every invariant, as the drainage goes on; and the same once more, from a saved state half way.
 TEST(GeneralScenesInvariance, HoldWhatEveryDrainageHolds) {
   std::size_t drained = 0, moves = 0, collapsed = 0, refused = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= scenes_in_ci; ++seed) {
     const scenes::GeneralScene scene(seed);
     SCOPED_TRACE(scene.description());
     try {
@@ -64,8 +70,8 @@ TEST(GeneralScenesInvariance, HoldWhatEveryDrainageHolds) {
   }
   EXPECT_LE(collapsed, 1u);
   EXPECT_LE(refused, 8u);
-  EXPECT_GT(drained, 900u);
-  EXPECT_GT(moves, 20000u);
+  EXPECT_GT(drained, 15 * scenes_in_ci);
+  EXPECT_GT(moves, 330 * scenes_in_ci);
 }
 
 /// Grains in the order of ids, of all ranks.
@@ -94,7 +100,7 @@ All on_ranks(const scenes::GeneralScene& scene, int ranks, double time, std::vec
 /// And on threads, and on ranks of another number half way.
 TEST(GeneralScenesInvariance, TheWindowedDriverHoldsThemToo) {
   std::size_t drained = 0, shared = 0, collapsed = 0, refused = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= scenes_in_ci; ++seed) {
     const scenes::GeneralScene scene(seed);
     SCOPED_TRACE(scene.description());
     try {
@@ -124,8 +130,8 @@ TEST(GeneralScenesInvariance, TheWindowedDriverHoldsThemToo) {
   }
   EXPECT_LE(collapsed, 2u);
   EXPECT_LE(refused, 8u);
-  EXPECT_GT(drained, 900u);
-  EXPECT_GE(shared, 10u);
+  EXPECT_GT(drained, 15 * scenes_in_ci);
+  EXPECT_GE(shared, scenes_in_ci / 6);
 }
 
 spot::SpotParameters dyadic_spots() {
@@ -192,7 +198,7 @@ All recirculate(const scenes::GeneralScene& scene, bool on_surface, int ranks, s
 TEST(GeneralScenesInvariance, GrainsGoRound) {
   std::int64_t all_put_back = 0, put_back = 0;
   std::size_t shared = 0, collapsed = 0;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+  for (std::uint64_t seed = 1; seed <= scenes_in_ci / 2; ++seed) {
     const scenes::GeneralScene scene(seed);
     SCOPED_TRACE(scene.description());
     try {
@@ -211,8 +217,8 @@ TEST(GeneralScenesInvariance, GrainsGoRound) {
     }
   }
   EXPECT_LE(collapsed, 1u);
-  EXPECT_GE(shared, 7u);
-  EXPECT_GT(all_put_back, 200);
+  EXPECT_GE(shared, scenes_in_ci / 9);
+  EXPECT_GT(all_put_back, static_cast<std::int64_t>(3 * scenes_in_ci));
 }
 
 /// A heap in the middle of a wide base, which nothing leaves on any side.

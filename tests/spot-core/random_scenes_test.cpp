@@ -70,7 +70,7 @@ void check_scenes(std::uint64_t scenes) {
 #ifdef SPOT_SANITIZED
 constexpr std::uint64_t scenes_in_ci = 60;
 #else
-constexpr std::uint64_t scenes_in_ci = 1000;
+constexpr std::uint64_t scenes_in_ci = 300;
 #endif
 
 TEST(RandomScenesInvariance, HoldWhatEveryDrainageHolds) { check_scenes(scenes_in_ci); }
