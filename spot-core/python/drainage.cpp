@@ -62,6 +62,7 @@ Drainage::Drainage(const Packing& packing, const Walls& walls, const std::vector
   spot::SpotParameters spots = parameters.complete();
   spots.injection_rate = injection_of(outlets, spots, diameter_);
   spots.holds_outflow = holds_outflow(outlets);
+  for (const Outlet& outlet : outlets) full_births_.push_back(outlet.full_births(spots, diameter_));
   const std::vector<spot::Grain> grains = packing.grains();
   const spot::DrainageLimits limits{outlet_height.value_or(holes.height()), parameters.largest_overlap};
   const double extent = extent_of(packing, walls, holes, limits.outlet);
@@ -160,6 +161,17 @@ Packing Drainage::packing() const {
   return Packing(positions, radii, all, held);
 }
 
+void Drainage::set_factor(std::int64_t outlet, double factor) {
+  spot::WindowedDrainage& drainage = quiet();
+  const auto outlets = static_cast<std::int64_t>(full_births_.size());
+  if (outlet < 0 || outlet >= outlets)
+    throw spot::InvalidParameter(spot::message("outlet is ", outlet, " but must be from 0 to ", outlets - 1));
+  if (!(factor >= 0.0) || !std::isfinite(factor))
+    throw spot::InvalidParameter(spot::message("factor is ", factor, " but must be finite and not negative"));
+  const auto number = static_cast<std::size_t>(outlet);
+  drainage.change_rate(number, time(), factor * full_births_[number]);
+}
+
 std::vector<std::int64_t> Drainage::drained_through() const {
   quiet();
   std::vector<std::int64_t> counts(container_->outlets().size(), 0);
@@ -244,7 +256,12 @@ CollapsedPacking if relaxation does not keep up; the drainage is of no use then.
       .def_property_readonly("counters", &Drainage::counters, "What has happened so far.")
       .def_property_readonly("largest_overlap", &Drainage::largest_overlap,
                              "Of two grains: 1 less their distance over the sum of their radii.")
-      .def("set_threads", &Drainage::set_threads, py::arg("threads"), "From now on so many share the work.");
+      .def("set_threads", &Drainage::set_threads, py::arg("threads"), "From now on so many share the work.")
+      .def("set_factor", &Drainage::set_factor, py::arg("outlet"), py::arg("factor"),
+           R"(From now on an outlet has so many times its rate, whatever its schedule says; 0 closes it to spots.
+
+outlet: its number, from 0. A callback of advance_to() may call this, too.
+ValueError for outlets that are not there, and for factors below 0 or too large.)");
   module.def(
       "drain",
       [](const Packing& packing, const Walls& walls, const std::vector<Outlet>& outlets, const Parameters& parameters,

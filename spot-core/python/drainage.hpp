@@ -40,6 +40,8 @@ class Drainage {
   spot::Counters counters() const { return quiet().total(); }
   double largest_overlap() const { return quiet().largest_overlap().depth; }
   void set_threads(int threads) { quiet().set_threads(threads); }
+  /// Throws spot::InvalidParameter, naming what doesn't fit, and changes nothing then.
+  void set_factor(std::int64_t outlet, double factor);
 
  private:
   spot::WindowedDrainage& quiet() const;
@@ -52,6 +54,7 @@ class Drainage {
   std::unique_ptr<spot::WindowedDrainage> drainage_;
   double diameter_, window_ = 0.0;
   std::int64_t windows_ = 0, grains_ = 0;
+  std::vector<double> full_births_;  // at each outlet, by a factor of 1
   Drained drained_;
   bool running_ = false;    // windows, without Python's lock
   bool advancing_ = false;  // a call of advance_to

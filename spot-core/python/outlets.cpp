@@ -55,17 +55,18 @@ ValueError unless just one of the three is given, and times increase.
 
 }  // namespace
 
+double Outlet::full_births(const spot::SpotParameters& spots, double diameter) const {
+  if (kind == Rate::births) return rate;
+  if (kind == Rate::outflow) return spot::births_for(rate, spots, diameter);
+  const double outflow = spot::predicted_outflow(*hole.hole, {}, rate, diameter);
+  if (outflow == 0.0)
+    throw spot::InvalidParameter("Beverloo's law predicts no outflow through the " + hole.name() +
+                                 ", which is too narrow");
+  return spot::births_for(outflow, spots, diameter);
+}
+
 spot::RateSchedule Outlet::births(const spot::SpotParameters& spots, double diameter) const {
-  double births = rate;
-  if (kind == Rate::gravity) {
-    const double outflow = spot::predicted_outflow(*hole.hole, {}, rate, diameter);
-    if (outflow == 0.0)
-      throw spot::InvalidParameter("Beverloo's law predicts no outflow through the " + hole.name() +
-                                   ", which is too narrow");
-    births = spot::births_for(outflow, spots, diameter);
-  } else if (kind == Rate::outflow) {
-    births = spot::births_for(rate, spots, diameter);
-  }
+  const double births = full_births(spots, diameter);
   std::vector<spot::RateStep> steps;
   if (schedule.empty() || schedule.front().first > 0.0) steps.push_back({0.0, births});
   for (const auto& [time, factor] : schedule) steps.push_back({time, factor * births});

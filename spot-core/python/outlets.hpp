@@ -24,6 +24,9 @@ struct Outlet {
 
   /// Births through time. Throws spot::InvalidParameter, naming the hole, if Beverloo's law has no outflow through it.
   spot::RateSchedule births(const spot::SpotParameters& spots, double diameter) const;
+
+  /// The same where the schedule's factor is 1.
+  double full_births(const spot::SpotParameters& spots, double diameter) const;
 };
 
 spot::Outlets holes_of(const std::vector<Outlet>& outlets);

@@ -235,6 +235,30 @@ def test_a_closed_outlet_lets_nothing_out():
     assert len(d.drained) > 0 and d.drained.times[0] > 4.0
 
 
+def test_a_factor_is_a_step_of_the_schedule():
+    """To the last bit, between calls and in a callback."""
+    later = Drainage(PACKING, BOX, opening(), beads())
+    later.advance_to(3.0)
+    at = later.time
+    later.set_factor(0, 0.5)
+    later.advance_to(6.0)
+    called = Drainage(PACKING, BOX, opening(), beads())
+    called.advance_to(6.0, callback=lambda progress: called.set_factor(0, 1.0 if progress.time < at else 0.5), every=called.window)
+    scheduled = drain(PACKING, BOX, opening(schedule=[(at, 0.5)]), beads(), 6.0)
+    full = drain(PACKING, BOX, opening(), beads(), 6.0)
+    assert np.array_equal(later.packing.positions, scheduled.packing.positions)
+    assert np.array_equal(called.packing.positions, scheduled.packing.positions)
+    assert scheduled.counters.moves < full.counters.moves
+
+
+def test_factors_out_of_range_are_refused():
+    d = Drainage(PACKING, BOX, opening(), beads())
+    for outlet, factor, text in [(1, 1.0, "outlet is 1 but must be from 0 to 0"), (-1, 1.0, "outlet is -1"),
+                                 (0, -0.5, "factor is -0.5"), (0, float("nan"), "factor is nan"), (0, 1e300, "")]:
+        with pytest.raises(ValueError, match=text):
+            d.set_factor(outlet, factor)
+
+
 def test_outflow_is_what_was_asked_for():
     """At 40 grains per time; births are Poisson, of 346 a time: 3 standard errors of their number in 6 times are 7 %,
     and the first spots bring what they enclose in the outlet later: hence 20 %."""
