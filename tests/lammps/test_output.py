@@ -216,8 +216,8 @@ def test_memory_usage(tmp_path, words):
     assert said == pytest.approx(held, rel=0.1)
 
 
-def scene(folder):
-    return json.loads((folder / "scene.json").read_text())
+def scene(folder, name="scene.json"):
+    return json.loads((folder / name).read_text())
 
 
 @needs_mpirun
@@ -237,7 +237,7 @@ def test_the_scene_counts_time_from_the_first_step_of_the_fix(tmp_path):
     run_ok(f"units lj\natom_style sphere\nboundary f f f\ninclude {LOAD_SPOT}\nread_restart saved\ntimestep 0.1\n"
            f"{FIX} scene again.json 1\nrun 10\n", tmp_path)
     assert not (tmp_path / "scene.json").exists()
-    again = json.loads((tmp_path / "again.json").read_text())
+    again = scene(tmp_path, "again.json")
     assert again["opening_time"] == pytest.approx(5) and again["grains"] == len(lattice())
 
 

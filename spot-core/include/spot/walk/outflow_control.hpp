@@ -21,8 +21,8 @@ namespace spot {
 ///     nu_s (1 + M / (F T)),  but at 1 to 3 / 2 of nu_s.
 ///
 /// So M goes to a constant within T, and the outflow to F, with no overshoot. M is never below 0: an outlet loses
-/// volume and gains none. What is over it when it opens leaves at once, and for T less would be born. A spot delivers
-/// its volume on its way through the outlet, so F is that of R_s / v_s before. T is
+/// volume and gains none. What is over it when it opens leaves at once, and would make births fewer for T. A spot
+/// delivers its volume on its way through the outlet, so F is that of R_s / v_s before. T is
 /// calibration::climb_of_flow_memory R_s / v_s.
 class OutflowControl {
  public:
