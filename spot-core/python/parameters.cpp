@@ -103,15 +103,14 @@ Parameters::Parameters(double d, double tau) : diameter(d) {
   spots.radius = spots.profile->calibrated().radius_in_diameters * d;
   spots.step_height = spot::step_height_in_diameters(spot::Accuracy::normal) * d;
   spots.influence = 1.5e-3;
-  spots.speed = 2.5 * d / tau;
+  spots.speed = 6.0 * d / tau;
   spots.fixed_volume = 77.0;
-  spots.dilation = 0.03;
   spots.critical_fraction = 0.62;
-  spots.exchange_length = 0.5 * d;
+  spots.exchange_length = 0.75 * d;
   spots.dilatancy = 0.15 * d;
   spots.spread = 0.6;
   spots.wall_shear = 0.7;
-  spots.surface_exponent = 3.0;
+  spots.surface_exponent = 2.0;
   spots.nonaffine = 0.15;
   spots.nonaffine_length = 0.5 * d;
   diffusion_length = 1.47 * d;
@@ -136,8 +135,8 @@ Drainage copies them, and refuses by a ValueError what is outside its range. doc
 
 >>> parameters = Parameters.glass_beads(1.0, 1.0, seed=7)
 >>> parameters.seed, parameters.influence, parameters.speed
-(7, 0.0015, 2.5)
->>> parameters.dilation = 0.0
+(7, 0.0015, 6.0)
+>>> parameters.surface_exponent = 3.0
 )");
   bound.def_static(
       "glass_beads",

@@ -139,7 +139,7 @@ def mixture(tmp_path_factory):
     folder = tmp_path_factory.mktemp("mixture")
     (folder / "packing.data").write_text(gzip.open(MIXTURE, "rt").read())
     fix = (f"fix drain all spot box {-10 * D} {10 * D} {-4 * D} {4 * D} orifice 0 0 0 {4 * D} influence {W} volume {N} "
-           f"diffusion {1.47 * D} speed {2.5 * D / TAU} dilation 0.03 surface 3 nonaffine 0.15 {0.5 * D} closing 0.004 0.15 "
+           f"diffusion {1.47 * D} speed {6 * D / TAU} surface 2 nonaffine 0.15 {0.5 * D} closing 0.004 0.15 "
            f"injection {BIRTHS / TAU}")
     spots = "dump spots all local 4 spots.dump f_drain[1]\nthermo 4"
     said = run_ok(deck(fix=fix, units="si", timestep=0.5 * TAU, run="run 40", after=spots), folder)

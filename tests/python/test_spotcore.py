@@ -72,8 +72,8 @@ def test_everything_public_has_a_docstring():
 
 LOAD_SPOT = ROOT / "lammps-package" / "load_spot.lmp"
 needs_lmp = pytest.mark.skipif("SPOT_LMP" not in os.environ, reason="needs lmp: SPOT_LMP")
-MODEL = ("speed 2.5 dilation 0.03 volume 77 influence 1.5e-3 diffusion 1.47 critical 0.62 0.5 dilatancy 0.15 "
-         "spread 0.6 0.7 surface 3 nonaffine 0.15 0.5 closing 0.004 0.15")
+MODEL = ("speed 6 volume 77 influence 1.5e-3 diffusion 1.47 critical 0.62 0.75 dilatancy 0.15 "
+         "spread 0.6 0.7 surface 2 nonaffine 0.15 0.5 closing 0.004 0.15")
 
 
 def run_lmp(folder, walls_and_outlets, positions, steps, window, box="-12 12 -12 12 -4 30", boundary="f f f", model=MODEL):
@@ -152,16 +152,16 @@ def test_same_bits_as_fix_spot(scene, tmp_path):
 
 def test_parameters_of_glass_beads_are_those_of_the_deck():
     text = (ROOT / "examples" / "own-hopper" / "in.own").read_text().replace("&\n", " ")
-    assert re.search(r"speed \$\(2\.5\*v_d/v_t\) dilation 0\.03 volume 77 influence 1\.5e-3\s+diffusion \$\(1\.47\*v_d\) "
-                     r"critical 0\.62 \$\(0\.5\*v_d\) dilatancy \$\(0\.15\*v_d\) spread 0\.6 0\.7\s+surface 3 "
+    assert re.search(r"speed \$\(6\*v_d/v_t\) volume 77 influence 1\.5e-3\s+diffusion \$\(1\.47\*v_d\) "
+                     r"critical 0\.62 \$\(0\.75\*v_d\) dilatancy \$\(0\.15\*v_d\) spread 0\.6 0\.7\s+surface 2 "
                      r"nonaffine 0\.15 \$\(0\.5\*v_d\) "
                      r"closing 0\.004 0\.15", text)
     p = Parameters.glass_beads(0.003, 0.0175)
-    assert p.speed == pytest.approx(2.5 * 0.003 / 0.0175)
+    assert p.speed == pytest.approx(6 * 0.003 / 0.0175)
     assert [p.dilation, p.volume, p.influence, p.critical_fraction, p.spread, p.wall_shear, p.surface_exponent, p.nonaffine,
-            p.closing_gap, p.closing_share] == [0.03, 77, 1.5e-3, 0.62, 0.6, 0.7, 3, 0.15, 0.004, 0.15]
+            p.closing_gap, p.closing_share] == [0, 77, 1.5e-3, 0.62, 0.6, 0.7, 2, 0.15, 0.004, 0.15]
     assert [p.diffusion_length, p.exchange_length, p.dilatancy, p.nonaffine_length] == pytest.approx(
-        [1.47 * 0.003, 0.5 * 0.003, 0.15 * 0.003, 0.5 * 0.003])
+        [1.47 * 0.003, 0.75 * 0.003, 0.15 * 0.003, 0.5 * 0.003])
 
 
 def test_parameters_of_glass_beads_are_those_that_decks_include():

@@ -14,17 +14,16 @@ Scene::Scene() {
   spots.profile = spot::InfluenceProfile::parabolic;
   spots.radius = deck_radius;
   spots.influence = 1.5e-3;
-  spots.speed = 2.5;
-  spots.dilation = 0.03;
+  spots.speed = 6.0;
   spots.injection_rate = 613.0;
   spots.fixed_volume = 77.0;
   // The deck's 0.62 is for packings that were poured; this one has 0.54 at rest, to the smallest spots 0.503.
   spots.critical_fraction = 0.5;
-  spots.exchange_length = 0.5;
+  spots.exchange_length = 0.75;
   spots.dilatancy = 0.15;
   spots.spread = 0.6;
   spots.wall_shear = 0.7;
-  spots.surface_exponent = 3.0;
+  spots.surface_exponent = 2.0;
   spots.nonaffine = 0.15;
   spots.nonaffine_length = 0.5;
   spots.seed = 1;

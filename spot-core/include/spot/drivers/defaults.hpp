@@ -23,7 +23,7 @@ constexpr double side_buffer = 0.25, base_buffer = 2.0;
 /// Longest windows, by the climb of a spot and by the flow of grains through the orifice: longer ones relax more of the
 /// neighbouring cells at the same time, which is both cheaper and closer to DEM, until grains go too far in one
 /// (analysis/one_factor.py, its windows).
-constexpr double climb_in_a_window = 0.32, flow_in_a_window = 0.15;
+constexpr double climb_in_a_window = 0.6, flow_in_a_window = 0.15;
 
 }  // namespace spot::calibration
 

@@ -23,12 +23,12 @@ constexpr double slowest_relative_speed = 0.125, fastest_relative_speed = 4.0;
 /// far less than the spacing of the lattice on which spots are counted. Windows set them once each.
 constexpr double climb_between_settings = 0.1;
 
-/// The free surface is found anew whenever a spot at v_s has climbed this part of R_s. A choice: 0.7 tau with the
-/// fitted parameters, in which the surface of the example sinks by 0.1 d, where spots tell heights apart on the scale
+/// The free surface is found anew whenever a spot at v_s has climbed this part of R_s. A choice: 0.3 tau with the
+/// fitted parameters, in which the surface of the example sinks by 0.05 d, where spots tell heights apart on the scale
 /// of R_s. In every window it took 3 to 4 % of a run, since it asks all grains.
 constexpr double climb_between_surfaces = 0.5;
 
-/// While a spot at v_s climbs so many R_s, what FlowField remembers of earlier steps falls by a factor of e: 14 tau
+/// While a spot at v_s climbs so many R_s, what FlowField remembers of earlier steps falls by a factor of e: 6 tau
 /// with the fitted parameters. A choice: long enough for hundreds of steps at each node, short beside the time in which
 /// the flow of a silo changes its shape.
 constexpr double climb_of_flow_memory = 10.0;
