@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 from spot_analysis.calibration.estimate import CalibrationError, Estimate
-from spot_analysis.calibration.lammps_variables import RADII, lammps_variables
+from spot_analysis.calibration.lammps_variables import OFF, RADII, lammps_variables
 from spot_analysis.calibration.measurement import measure
 from spot_analysis.calibration.parameters import parameters, response_of
 from spot_analysis.calibration.refinement import deck_text, refine
@@ -121,12 +121,16 @@ def test_parameter_file_speaks_the_decks_language(result):
     lines = [line for line in result[2][0].read_text().splitlines() if not line.startswith("#")]
     sources = ANALYSIS.parent
     deck = "".join((sources / file).read_text() for file in ("examples/silo/in.silo_spot", "lammps-package/glass-beads.lmp"))
-    assert [line.split()[1] for line in lines] == ["profile", "radius", "influence", "volume", "diffusion", "dilation", "speed", "outflow"]
+    assert [line.split()[1] for line in lines] == ["profile", "radius", "influence", "volume", "diffusion", "dilation", "speed",
+                                                   "outflow", *OFF]
     assert lines[0].split("#")[0].split() == ["variable", "profile", "index", "uniform"]
     for line in lines[1:]:
         command, name, style, formula = line.split("#")[0].split()
         assert (command, style) == ("variable", "index")
         assert f"${{{name}}}" in deck or f"$(v_{name}/" in deck
+        if name in OFF:
+            assert formula == "0"
+            continue
         value = eval(formula.strip("$()"), {"v_d": 1.0, "v_tau": 1.0})  # as the deck would, where d = tau = 1
         found = result[1]["measured" if name == "outflow" else "parameters"][name]["value"]
         assert value == pytest.approx(found, rel=1e-5)

@@ -5,6 +5,8 @@ from .estimate import combine
 from .parameters import SYMBOLS, UNITS
 
 IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "dilation": "", "speed": "*v_d/v_tau"}
+# Of the deck, and not of the runs by which response.py tells what is put in from what is shown: left out of the model.
+OFF = ("critical", "dilatancy", "spread", "surface", "nonaffine", "closing_gap")
 
 
 # R_s of spots with a profile over that of uniform ones with the same volume: the mean share is 1 or 0.4. A test holds
@@ -31,6 +33,7 @@ def lammps_variables(parameters, source, span, profile="parabolic"):
     flux = combine(lambda w, grains, rate: w * grains * rate, *(parameters[name] for name in ("influence", "volume",
                                                                                               "injection")))
     lines.append(f"variable        {'outflow':10} index {float(flux.value):.6g}  # F = nu_s w <N>, +- {float(flux.error):.2g} 1/tau")
+    lines += ["# Off, as in the runs that calibration was tried on"] + [f"variable        {name:10} index 0" for name in OFF]
     if profile != "uniform":
         lines.append(f"# R_s is that of {profile} spots with the volume of uniform ones of R_s = {float(parameters['radius'].value):.4g} d.")
     return "\n".join(lines) + "\n"
