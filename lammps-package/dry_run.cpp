@@ -24,7 +24,8 @@ constexpr double beside = 1.0;  // of it on each side of the simulation box, so 
 constexpr std::int64_t ways_kept = 12;  // of the spots that are born first
 constexpr std::size_t most_moves = 20'000'000;
 constexpr double climbs = 4.0;  // so often spots could climb from outlet to surface at v_s, at most
-/// Between two looks at how many there are, in such climbs; and a change that is none.
+/// Between two looks at how many there are, in such climbs; and a change that is none, as is one by less than sqrt(N)
+/// of N spots, since a quarter of them are new, and come by chance.
 constexpr double look = 0.25, steady_change = 0.02;
 
 /// What spots do alone.
@@ -78,7 +79,9 @@ Walks walk(const DryRun& run) {
     const std::size_t live = spots.live().size();
     walks.moves_per_time = static_cast<double>(moves - moves_before) / (walks.time - last_look);
     const double change = static_cast<double>(live) - static_cast<double>(live_before);
-    walks.steady = walks.time > climb && std::abs(change) < steady_change * static_cast<double>(live);
+    const auto spots_alive = static_cast<double>(live);
+    walks.steady =
+        walks.time > climb && std::abs(change) < std::max(steady_change * spots_alive, std::sqrt(spots_alive));
     moves_before = moves;
     live_before = live;
     last_look = walks.time;

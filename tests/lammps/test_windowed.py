@@ -91,7 +91,7 @@ def test_unknown_instruction_set(tmp_path):
     assert "SPOT_INSTRUCTION_SET is 'mmx'" in done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("rate, windows", [(100, 5), (10, 3)])  # the flow decides, then the climb
+@pytest.mark.parametrize("rate, windows", [(100, 5), (10, 2)])  # the flow decides, then the climb
 def test_default_window_is_a_fraction_of_the_timestep(tmp_path, rate, windows):
     """The longest one in which spots climb and grains flow no more than the documentation says."""
     text = " ".join((ROOT / "lammps-package" / "doc" / "fix_spot.rst").read_text().split())
