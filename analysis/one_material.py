@@ -34,7 +34,7 @@ INGREDIENTS = {
     "surface": {"variables": {"surface": "0"}},
     "nonaffine": {"variables": {"nonaffine": "0"}},
     "closing": {"variables": {"closing_gap": "0"}},
-    "one speed": {"variables": {"dilation": "0.03", "speed": f"{2.5 * 0.003 / TAU:g}"}},  # v_s (c / c_0)^2, as before it
+    "one-speed": {"variables": {"dilation": "0.03", "speed": f"{2.5 * 0.003 / TAU:g}"}},  # v_s (c / c_0)^2, as before it
 }
 
 
