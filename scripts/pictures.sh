@@ -65,13 +65,9 @@ pictures_of_benchmark-silo() {
 }
 
 pictures_of_bidisperse() {
-  local runs=results/pictures/bidisperse here=examples/bidisperse dem=liggghts-inputs/silo/post/mixture/drain
+  local runs=results/pictures/bidisperse here=examples/bidisperse
   for seed in 1 2 3; do drain bidisperse $seed -var ratio 2 -var critical 0.655 -var seed $seed; done
-  if [ -e $dem/scene.json ]; then
-    render DEM=$dem spot=$runs/1 --times 10 20 30 --height 300 -o $here/silo-2.png
-  else
-    echo "left out: $here/silo-2.png, for which DEM has to drain sizes 1:2 ($here/README.md)"
-  fi
+  render DEM=$here/dem.npz spot=$runs/1 --times 10 20 30 --height 300 -o $here/silo-2.png
   analysis mixture $here/dem-2.json $runs/{1,2,3} --plot $here/profiles-2.png
 }
 

@@ -268,6 +268,7 @@ Bytes later(const Bytes& saved, std::int64_t steps, std::int64_t spots, std::int
     spot::append(bytes, reader.take<spot::Vector3>());
     shift(time);
     for (int k = 0; k < 4; ++k) shift(0.0);  // direction, chance, relative speed, volume
+    shift(std::int64_t{0});                  // outlet
   }
   shift(std::int64_t{0});  // times that relative speeds were set
   shift(std::int64_t{0});  // intervals until the surface is found next

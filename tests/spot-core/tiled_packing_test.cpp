@@ -62,6 +62,8 @@ std::vector<int> carry_out(TiledPacking& packing, std::vector<Move> moves, const
   return enclosed;
 }
 
+bool none_is_closed(const Vector3&) { return false; }
+
 /// What is done to a packing. Lengths in diameters; the numbers of the default are for a box of 11 x 7 x 8 centres.
 struct Treatment {
   std::string name;
@@ -419,7 +421,7 @@ TEST(TiledPackingInvariance, ThreadsChangeNothing) {
       moved = carry_out(packing, moves, {2.6, 5e-3}, *silo, workers);
       for (const int n : moved) counts.back().push_back(static_cast<std::size_t>(n));
       counts.back().push_back(spot::CellRelaxation(packing, relaxation_with(1.2, 0.7)).sweep(2, 0.02, *silo, workers));
-      packing.take_out_below(0.48, out.back());
+      packing.take_out_below(0.48, none_is_closed, out.back());
     }
     left.push_back(sorted_grains(packing));
     std::sort(out.back().begin(), out.back().end(), [](const Grain& a, const Grain& b) { return a.id < b.id; });
@@ -672,15 +674,34 @@ TEST(TiledPackingUnit, TakesOutWhatIsBelowTheOutlet) {
   Workers workers(1);
   std::vector<int> moved;
   std::vector<Grain> out;
-  packing.take_out_below(0.0, out);
+  packing.take_out_below(0.0, none_is_closed, out);
   EXPECT_TRUE(out.empty());
   moved = carry_out(packing, one_move({1, 1, 0}, {0, 0, 0.1}), {2.6, 0.05}, *space, workers);
-  packing.take_out_below(0.0, out);
+  packing.take_out_below(0.0, none_is_closed, out);
   ASSERT_EQ(out.size(), 1u) << "held grains stay";
   EXPECT_EQ(out[0].id, 1);
   EXPECT_NEAR(out[0].position.z(), -0.004, 1e-6);
   EXPECT_EQ(packing.size(), 3u);
   EXPECT_NEAR(packing.largest_overlap().depth, 0.0, 1e-6) << "who is out overlaps with nobody";
+}
+
+TEST(TiledPackingUnit, PutsUpWhatIsBelowWhereItIsClosed) {
+  const auto space = scenes::empty_space();
+  TiledPacking packing(1.0, 100.0, -0.3, {{1, {1, 1, -0.29}}, {2, {2.5, 1, -0.29}}}, *space);
+  Workers workers(1);
+  carry_out(packing, one_move({1.5, 1, 0}, {0, 0, 0.5}), {2.6, 0.05}, *space, workers);
+  const auto below = sorted_grains(packing);
+  std::vector<Grain> out;
+  packing.take_out_below(
+      -0.3, [](const Vector3& place) { return place.x() < 2.0; }, out);
+  ASSERT_EQ(out.size(), 1u);
+  EXPECT_EQ(out[0].id, 2);
+  const auto left = sorted_grains(packing);
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_LT(below[0].position.z(), -0.3);
+  EXPECT_GE(left[0].position.z(), -0.3);
+  EXPECT_NEAR(left[0].position.z(), -0.3, 1e-6);
+  EXPECT_EQ(left[0].position.x(), below[0].position.x());
 }
 
 TEST(TiledPackingUnit, SpotsThatAreTooWideAreNamed) {

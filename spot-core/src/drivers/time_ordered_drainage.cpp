@@ -2,6 +2,7 @@
 #include "spot/drivers/time_ordered_drainage.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -106,7 +107,7 @@ void TimeOrderedDrainage::carry_out(Move move) {
     packing_.update_lists(container());
     relax(near_);
   }
-  if (move.middle.z() - reach < limits().outlet) take_out_drained();
+  if (move.middle.z() - reach < limits().outlet) take_out_drained(move.time);
 }
 
 bool TimeOrderedDrainage::relaxes_around(const Move& move) const {
@@ -142,11 +143,17 @@ void TimeOrderedDrainage::relax_everywhere() {
   ++relaxed_everywhere_;
 }
 
-void TimeOrderedDrainage::take_out_drained() {
+void TimeOrderedDrainage::take_out_drained(double time) {
   packing_.update_lists(container());
   std::vector<Grain> drained;
-  for (const std::uint32_t i : near_)
-    if (packing_.z()[i] < limits().outlet) drained.push_back(packing_.remove(i));
+  for (const std::uint32_t i : near_) {
+    const double below = limits().outlet - packing_.z()[i], quantum = packing_.quantum().length();
+    if (below <= 0.0) continue;
+    if (rates().at(container().nearest_outlet_index(packing_.position(i)), time) == 0.0)
+      packing_.move(i, 0.0, 0.0, std::ceil(below / quantum) * quantum);
+    else
+      drained.push_back(packing_.remove(i));
+  }
   add_drained(drained, spots_);
   if (relaxes_every_move()) checks().require_left_through_orifice(drained);
 }

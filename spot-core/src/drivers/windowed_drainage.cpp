@@ -116,7 +116,7 @@ void WindowedDrainage::advance_to(double time) {
     displace();
     remove_spots_above();
     relax();
-    take_out_drained();
+    take_out_drained(now, until);
     if (communicator_->size() > 1 && windows_ % calibration::windows_between_balances == 0)
       packing_.balance(container());
   }
@@ -187,9 +187,13 @@ std::size_t WindowedDrainage::memory() const {
   return packing_.memory() + relaxation_.memory() + spots_.memory() + moves_.memory() + bytes_in(displacing_, carried_);
 }
 
-void WindowedDrainage::take_out_drained() {
+/// An outlet at which no spot may be born between these times is closed.
+void WindowedDrainage::take_out_drained(double from, double until) {
+  const auto is_closed = [&](const Vector3& place) {
+    return rates().expected_births(container().nearest_outlet_index(place), from, until) == 0.0;
+  };
   std::vector<Grain> drained;
-  packing_.take_out_below(limits().outlet, drained);
+  packing_.take_out_below(limits().outlet, is_closed, drained);
   add_drained(drained, spots_);
   checks().require_left_through_orifice(drained);
 }

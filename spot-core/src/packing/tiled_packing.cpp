@@ -38,6 +38,14 @@ std::vector<double> box_of(const std::vector<Grain>& grains, double outlet, Comm
   return box;
 }
 
+/// Puts a grain up to a height that it is below.
+void put_up(Cells& cells, std::uint32_t slot, double height) {
+  const double up = std::ceil((height - cells.position(slot).z()) / cells.lattice().quantum().length());
+  const auto by = static_cast<std::int32_t>(up);
+  cells.points[slot].z = add(cells.points[slot].z, by);
+  cells.drift[cells.cell_of(slot)] += by;
+}
+
 }  // namespace
 
 TiledPacking::TiledPacking(double diameter, double extent, const Periodic& periodic,
@@ -231,7 +239,8 @@ void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit, 
   workers ? workers->share_out(owned, visit_cells) : visit_cells(0, 0, owned);
 }
 
-void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {
+void TiledPacking::take_out_below(double outlet, const std::function<bool(const Vector3& place)>& is_closed,
+                                  std::vector<Grain>& drained) {
   const CellLattice& lattice = cells_.lattice();
   const int layers =
       std::clamp(lattice.layer(outlet + lattice.skin()) + 1 - cells_.first_own_layer(), 0, cells_.own_layers());
@@ -239,6 +248,7 @@ void TiledPacking::take_out_below(double outlet, std::vector<Grain>& drained) {
   cells_.visit(cells_.first_own(), last, [&](std::uint32_t slot) {
     const bool stays = cells_.points[slot].state != Point::free || cells_.position(slot).z() >= outlet;
     if (stays || !cells_.own(cells_.cell_of(slot))) return;
+    if (is_closed(cells_.position(slot))) return put_up(cells_, slot, outlet);
     drained.push_back(cells_.grain(slot));
     lists_.unlist(slot);
     cells_.vacate(slot);

@@ -18,6 +18,7 @@ inline void append(Bytes& bytes, const Spot& spot) {
   append(bytes, spot.chance);
   append(bytes, spot.relative_speed);
   append(bytes, spot.volume);
+  append(bytes, spot.outlet);
 }
 
 inline Spot take_spot(ByteReader& reader) {
@@ -30,6 +31,7 @@ inline Spot take_spot(ByteReader& reader) {
   spot.chance = reader.take<double>();
   spot.relative_speed = reader.take<double>();
   spot.volume = reader.take<double>();
+  spot.outlet = reader.take<std::int64_t>();
   return spot;
 }
 

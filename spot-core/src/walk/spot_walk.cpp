@@ -79,8 +79,10 @@ double SpotWalk::births_expected(std::int64_t id) const {
 
 Spot SpotWalk::birth(std::int64_t id, double time, const Container& container) const {
   const auto numbers = numbers_of_birth(parameters_, id);
-  const Outlet& outlet = container.outlets()[parameters_.injection_rate.outlet_of_birth(time, numbers[3])];
+  const std::size_t at = parameters_.injection_rate.outlet_of_birth(time, numbers[3]);
+  const Outlet& outlet = container.outlets()[at];
   Spot spot{id, 0, outlet.centre, time};
+  spot.outlet = static_cast<std::int64_t>(at);
   Vector3 from_centre = outlet.hole->point(parameters_.radius, numbers[1], numbers[2]);
   from_centre.z() = -parameters_.radius;
   spot.position = container.periodic().wrap(spot.position + from_centre);

@@ -71,7 +71,11 @@ void Spots::step_until(double until, const Container& container, Workers& worker
     for (std::size_t k = first; k < last; ++k) {
       Spot& spot = places_[k].spot;
       if (places_[k].removed || !(spot.next_step <= until)) continue;
-      while (spot.next_step <= until) stepped.moves.push_back(walk_.step(spot, container, surface_, flow_));
+      while (spot.next_step <= until)
+        if (stands(spot))
+          walk_.wait(spot);
+        else
+          stepped.moves.push_back(walk_.step(spot, container, surface_, flow_));
       stepped.ends.push_back({k, stepped.moves.size()});
     }
   };
@@ -88,6 +92,11 @@ void Spots::step_until(double until, const Container& container, Workers& worker
     }
   }
   queued_ = false;
+}
+
+/// A gate stops the flow above it at once, as DEM's does: what free volume is on its way waits there until it opens.
+bool Spots::stands(const Spot& spot) const {
+  return rates().at(static_cast<std::size_t>(spot.outlet), spot.next_step) == 0.0;
 }
 
 void Spots::queue(std::size_t place) {
@@ -132,17 +141,22 @@ std::optional<Move> Spots::next_step(double time, const Container& container, co
     } else if (event <= time && event == next_birth_.time()) {
       bear_next(container, [](const Spot&) { return true; });
       queue(places_.size() - 1);
+    } else if (events_.empty() || events_.front().time > time) {
+      return std::nullopt;
     } else {
-      break;
+      std::pop_heap(events_.begin(), events_.end());
+      const std::size_t place = events_.back().place;
+      events_.pop_back();
+      Spot& spot = places_[place].spot;
+      std::optional<Move> move;
+      if (stands(spot))
+        walk_.wait(spot);
+      else
+        move = walk_.step(spot, container, surface_, flow_);
+      queue(place);
+      if (move) return move;
     }
   }
-  if (events_.empty() || events_.front().time > time) return std::nullopt;
-  std::pop_heap(events_.begin(), events_.end());
-  const std::size_t place = events_.back().place;
-  events_.pop_back();
-  const Move move = walk_.step(places_[place].spot, container, surface_, flow_);
-  queue(place);
-  return move;
 }
 
 /// places_.end() if it is gone.

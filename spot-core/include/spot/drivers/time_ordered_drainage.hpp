@@ -56,7 +56,7 @@ class TimeOrderedDrainage : public Drainage {
   }
   void relax(const std::vector<std::uint32_t>& grains);
   void relax_everywhere();
-  void take_out_drained();
+  void take_out_drained(double time);
 
   Packing packing_;
   Spots spots_;

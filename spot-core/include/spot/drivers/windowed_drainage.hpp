@@ -86,7 +86,7 @@ class WindowedDrainage : public Drainage {
   void remove_spots_above();
   void let_settle(bool everybody);
   void relax();
-  void take_out_drained();
+  void take_out_drained(double from, double until);
   std::vector<Bytes> read(const std::vector<Bytes>& saved);
 
   std::shared_ptr<Communicator> communicator_;

@@ -58,8 +58,8 @@ class TiledPacking {
   /// What is needed to go on from here, apart from walls: the part of this rank.
   Bytes save() const;
 
-  /// Collective. Shares the layers out anew, by what was done in each of them since that was done last, if that makes
-  /// the part of the busiest rank smaller by more than it costs. Returns whether it has.
+  /// Collective. Shares the layers out anew, by what was done in each since the last time, if that takes more off the
+  /// busiest rank than it costs. Returns whether it has.
   bool balance(const Container& container);
 
   /// Calls visit(grain) for all grains of this rank, in no particular order; from all threads at once, if there are.
@@ -85,12 +85,12 @@ class TiledPacking {
   /// Collective. Takes out the grains with these ids, which are this rank's, and brings in others, of which each rank
   /// brings some; a grain that has moved is one that goes and one that comes. Those that come fall, as Settling finds
   /// them. All others keep what is remembered of them. Throws InvalidPacking, and is of no use any more, if a grain is
-  /// not there, is there already, or is beyond the extent. Returns the largest overlap of a grain of this rank that
-  /// came with any other, as it came.
+  /// not there, is there already, or beyond the extent. Returns the largest overlap of one that came, as it came.
   Overlap change(const std::vector<std::int64_t>& gone, const std::vector<Grain>& come, const Container& container);
 
-  /// Takes out this rank's grains with centres below the outlet and adds them to `drained`.
-  void take_out_below(double outlet, std::vector<Grain>& drained);
+  /// Moves this rank's grains with centres below the outlet to `drained`, or up to its height where it is closed.
+  void take_out_below(double outlet, const std::function<bool(const Vector3& place)>& is_closed,
+                      std::vector<Grain>& drained);
 
   /// Of a grain of this rank and any other.
   Overlap largest_overlap() const;
@@ -98,7 +98,7 @@ class TiledPacking {
   /// Bytes on this rank.
   std::size_t memory() const;
 
-  // What relaxation works on.
+  // For relaxation.
   Cells& cells() { return cells_; }
   const Cells& cells() const { return cells_; }
   const NeighbourLists& lists() const { return lists_; }
@@ -112,7 +112,7 @@ class TiledPacking {
   /// up to date.
   void update_lists(const Container& container, Workers& workers);
 
-  /// Work done in a cell, for balance(), in cells that moves reach.
+  /// For balance(), in cells that moves reach.
   void add_work(std::uint32_t cell, std::int64_t work) { work_[cells_.layer_of(cell)] += work; }
 
   /// Grains above this one may have lost what bore them: they are among those that Settling asks about.

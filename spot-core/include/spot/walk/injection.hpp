@@ -11,7 +11,7 @@ namespace spot {
 /// From `time` on an outlet has this many births per time, until the next step.
 struct RateStep {
   double time;  ///< in the units of the rates
-  double rate;  ///< 0: closed, to spots; grains stand in the hole as they do before the first spots come (1 / time)
+  double rate;  ///< 0: closed, to spots and to grains, which stay above the height where they are taken out (1 / time)
 };
 
 /// The rate of births of one outlet through time, constant in pieces, of which the last has no end.

@@ -21,6 +21,7 @@ struct Spot {
   double chance = 0.0;          ///< another, for whoever draws lots
   double relative_speed = 1.0;  ///< its speed over v_s
   double volume = 1.0;          ///< that it carries, over that of a newborn one (CriticalState)
+  std::int64_t outlet = 0;      ///< where it was born
 };
 
 /// How spots are born and walk. There is no state but the spot: all draws follow from (seed, spot id, step number). Of
@@ -51,6 +52,9 @@ class SpotWalk {
 
   /// From `time` on, the spot goes at this speed over v_s: what is left of its waiting time gets shorter or longer.
   void set_relative_speed(Spot& spot, double time, double relative_speed) const;
+
+  /// The next step comes a mean waiting time later.
+  void wait(Spot& spot) const { spot.next_step += parameters_.mean_waiting_time(); }
 
   /// Carries out the next step of a spot and draws the time of the one after. Where space repeats, the spot is in its
   /// cell then; the middle of the step need not be.

@@ -24,7 +24,8 @@ namespace spot {
 /// The live spots: births, relative speeds, steps and removals, for all drivers.
 ///
 /// A driver asks either for one step after the other, in the order of time and on one rank, or for all steps until the
-/// end of a window, spot by spot in the order of birth, on any number of ranks, each with spots of its own.
+/// end of a window, spot by spot in the order of birth, on any number of ranks, each with its own. Spots stand while
+/// their outlet has no births.
 class Spots {
  public:
   /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
@@ -33,9 +34,9 @@ class Spots {
   /// Calls its argument for the position of every grain of this rank.
   using VisitGrains = std::function<void(const std::function<void(const Vector3&)>&)>;
 
-  /// In the order of (time, spot): the next step of any spot up to and including `time`, or none. The spot has been
-  /// moved. Relative speeds are set, and the flow brought up to date, whenever a spot has climbed a tenth of its radius
-  /// at v_s, and the surface as by update_surface(). `visit_grains`: by default there are none.
+  /// In the order of (time, spot): the next step of any spot up to and including `time`, or none, carried out.
+  /// Relative speeds are set, and the flow is found anew, whenever a spot has climbed R_s / 10 at v_s, the surface as
+  /// by update_surface(). `visit_grains`: by default there are none.
   std::optional<Move> next_step(
       double time, const Container& container, const VisitGrains& visit_grains = [](const auto&) {});
 
@@ -58,7 +59,7 @@ class Spots {
   /// each move once, in the order of a spot's moves. `enclosed`: grain volume (1024 = grain_volume).
   Carried carry(const Move& move, int enclosed, const Container& container);
 
-  // The same in two parts. Several threads may do the first, for different spots.
+  // In two parts. Several threads may do the first, for different spots.
   Carried exchange(const Move& move, int enclosed, const Container& container);
   void add_to_flow(const Move& move, double carried) {
     if (shears_) flow_.add(move, carried);
@@ -66,8 +67,8 @@ class Spots {
 
   /// Collective. `elapsed` after the last time, spots learn how the flow is sheared now.
   void update_flow(double elapsed, Communicator& communicator);
-  /// Collective. Spots learn where the free surface is now, if they have to know: once in each interval in which a spot
-  /// at v_s climbs calibration::climb_between_surfaces, whatever the times of the calls in it after the first.
+  /// Collective. Spots learn where the free surface is, if they have to: once while a spot at v_s climbs
+  /// calibration::climb_between_surfaces, whatever the times of the calls meanwhile.
   void update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator);
 
   /// A grain of this rank, of this volume (1024 = grain_volume), has left through an outlet.
@@ -80,14 +81,12 @@ class Spots {
   void set_rates(double now, const Injection& rates);
   /// There is nothing left above the spot. One that is gone already may be named again.
   void remove(std::int64_t spot);
-  /// Takes out the spots that do not belong here.
   std::vector<Spot> take_out_others(const Belongs& here);
   void take_in(const std::vector<Spot>& spots);
 
   /// In order of birth.
   std::vector<Spot> live() const;
   std::int64_t born() const { return born_; }
-  /// Other walls; the spots stay.
   void replace_container(const Container& container);
 
   void save(Bytes& bytes) const;
@@ -119,6 +118,7 @@ class Spots {
   void await_birth(double from);
   bool bear_next(const Container& container, const Belongs& here);
   std::vector<Place>::iterator find(std::int64_t spot);
+  bool stands(const Spot& spot) const;
   void queue_all();
   void queue(std::size_t place);
   void drop_removed_events();
