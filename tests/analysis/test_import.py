@@ -35,8 +35,9 @@ def imported(folder, *words):
     assert done.returncode == 0, done.stderr
     text = (folder / "packing.data").read_text()
     rows = np.array(text.split("Atoms # sphere")[1].split(), dtype=float).reshape(-1, 7)
-    assert len(set(rows[:, 2])) == len(set(rows[:, 3])) == 1 and f"\n{len(rows)} atoms\n" in text
-    return rows[:, 0], rows[0, 2], rows[0, 3], rows[:, 4:], (folder / "in.spot").read_text()
+    assert len(set(rows[:, 3])) == 1 and f"\n{len(rows)} atoms\n" in text
+    sizes = rows[:, 2] if np.ptp(rows[:, 2]) else rows[0, 2]
+    return rows[:, 0], sizes, rows[0, 3], rows[:, 4:], (folder / "in.spot").read_text()
 
 
 def refusal(monkeypatch, capsys, *words):
@@ -205,10 +206,36 @@ def test_sizes(tmp_path, monkeypatch, capsys):
     def source(spread):
         return write_text(tmp_path / "sizes.data", data_text(TEN, 1 + spread * np.linspace(-1, 1, 10)))
 
-    assert "--equal-sizes gives all of them the mean" in refusal(monkeypatch, capsys, source(0.008), *BOX, "-o", tmp_path)
     assert imported(tmp_path / "out", source(0.008), *BOX, "--equal-sizes")[1] == pytest.approx(1)
-    assert "up to 2 % off their mean" in refusal(monkeypatch, capsys, source(0.02), *BOX, "--equal-sizes", "-o", tmp_path)
+    assert "makes equal what is within 1 %" in refusal(monkeypatch, capsys, source(0.02), *BOX, "--equal-sizes", "-o", tmp_path)
     assert imported(tmp_path / "out", source(0.02), *BOX, "--diameter", 1)[1] == 1
+    for spread in (0.008, 0.3):
+        _, sizes, _, _, deck = imported(tmp_path / "out", source(spread), *BOX)
+        assert np.allclose(sizes, 1 + spread * np.linspace(-1, 1, 10), rtol=1e-8, atol=0)
+        assert f"variable  d equal {np.cbrt(np.mean(sizes**3)):.9g} " in deck
+    assert "no grain may be more than 2 times as wide" in refusal(monkeypatch, capsys, source(0.4), *BOX, "-o", tmp_path)
+    fit = "--fit box --orifice 2".split()
+    assert "name the walls by --box" in refusal(monkeypatch, capsys, source(0.02), *fit, "-o", tmp_path)
+
+
+def test_a_mixture_is_relaxed_as_pairs_touch(tmp_path):
+    """Two sizes as DEM poured them, squeezed by 1 %: overlaps are of pairs, in the mean of their diameters."""
+    packing = EXAMPLES / "bidisperse" / "packing-2.data.gz"
+    grains = read_packing(str(packing))
+    squeezed = grains.positions * 0.99
+    box = walls.around(walls.box(*(0.99 * D * np.array([-10, 10, -4, 4]))), (0, 0, 0, 4 * D), D)
+    relaxed = overlaps.relax(squeezed, grains.diameters, 0.02, box)
+    assert relaxed.before > 0.01 and relaxed.moved < 0.1
+
+    def deepest(positions):
+        apart = scipy.spatial.distance.cdist(positions, positions)
+        touching = (grains.diameters[:, None] + grains.diameters) / 2
+        np.fill_diagonal(apart, np.inf)
+        return (1 - apart / touching).max()
+
+    assert relaxed.before == pytest.approx(deepest(squeezed)) and relaxed.after == pytest.approx(deepest(relaxed.positions))
+    assert relaxed.after <= 0.02
+    assert box.sticking_out(relaxed.positions, grains.diameters).max() < 0.02 + 1e-9
 
 
 def test_a_unit_that_was_forgotten_is_told(tmp_path):

@@ -17,46 +17,59 @@ from . import command_line
 from .import_options import UNITS, parse_arguments
 
 EQUAL, NEARLY_EQUAL = 1e-6, 0.01  # spreads of diameters: of equal grains, and what --equal-sizes makes equal
+WIDEST = 2  # diameters of the smallest grain, that fix spot allows
 STICKS_OUT, THROUGH = 0.01, 0.3  # d beyond a wall: grains that are counted, and that are refused
 GRAINS = (1e-5, 0.1)  # m that a grain's diameter is likely to be between
 DENSITY = 2500.0  # kg/m3, glass
 
 
-def one_diameter(options, grains, scale):
-    """Of all grains, in the deck's unit; raises AnalysisError where theirs differ too much."""
+def diameters_of(options, grains, scale):
+    """(n,) in the deck's unit; raises AnalysisError where they differ too much."""
+    n = len(grains.positions)
     if options.diameter:
-        return options.diameter
+        return np.full(n, options.diameter)
     if grains.diameters is None:
         raise AnalysisError(f"{options.packing}: no diameters or radii in it: give --diameter")
     low, mean, high = (float(function(grains.diameters)) for function in (np.min, np.mean, np.max))
     spread = max(high - mean, mean - low) / mean
     if spread <= EQUAL:
-        return mean * scale
+        return np.full(n, mean * scale)
     sizes = f"diameters are {low * scale:.6g} to {high * scale:.6g}, up to {100 * spread:.2g} % off their mean"
-    if spread > NEARLY_EQUAL:
-        raise AnalysisError(f"{options.packing}: {sizes}; this makes decks of equal grains, and --equal-sizes makes equal what is within 1 %")
-    if not options.equal_sizes:
-        raise AnalysisError(f"{options.packing}: {sizes}; this makes decks of equal grains: --equal-sizes gives all of them the mean")
-    print(f"sizes: {sizes}; all have {mean * scale:.6g} now")
-    return mean * scale
+    if options.equal_sizes and spread <= NEARLY_EQUAL:
+        print(f"sizes: {sizes}; all have {mean * scale:.6g} now")
+        return np.full(n, mean * scale)
+    if options.equal_sizes:
+        raise AnalysisError(f"{options.packing}: {sizes}; --equal-sizes makes equal what is within 1 %: leave it out")
+    if high > WIDEST * low:
+        raise AnalysisError(f"{options.packing}: {sizes}; no grain may be more than {WIDEST} times as wide as another")
+    print(f"sizes: {sizes}; they stay as they are" + (", though --equal-sizes would drain faster" if spread <= NEARLY_EQUAL else ""))
+    return grains.diameters * scale
 
 
-def placed(options, grains, diameter, scale):
+def placed(options, grains, diameters, scale):
     """Positions (n, 3) in the deck's unit, turned and shifted."""
     positions = turned(grains.positions * scale, direction(options.gravity)) + np.array(options.shift)
     if options.floor is not None:
-        floor = positions[:, 2].min() - diameter / 2 if options.floor == "auto" else options.floor
+        floor = (positions[:, 2] - diameters / 2).min() if options.floor == "auto" else options.floor
         positions = positions - [0, 0, floor]
         print(f"floor: z = {floor:.6g} is 0 now")
     return positions
 
 
-def walls_of(options, positions, diameter):
+def mean_diameter(diameters):
+    """Of a grain of mean volume: what fix spot calls d."""
+    return float(np.cbrt(np.mean(diameters**3)))
+
+
+def walls_of(options, positions, diameters):
     """Walls, or None where only their words are known, and (x, y, z, R) of the orifice."""
-    height = options.orifice[2] if len(options.orifice) == 4 else 0.0
+    height, diameter = options.orifice[2] if len(options.orifice) == 4 else 0.0, mean_diameter(diameters)
     if options.walls:
         return None, tuple(options.orifice)
     if options.fit:
+        if np.ptp(diameters) > 0:
+            raise AnalysisError("--fit finds walls by the layer of equal grains at them; of other sizes name the walls by --box, --cylinder, "
+                                "--cone or --walls")
         found, coverage = fit(options.fit, positions, diameter, height)
         print("fit: " + "; ".join(f"{part}, {share:.2f} grains at it for each d^2" for part, (_, share) in zip(found.parts, coverage)))
     elif options.box:
@@ -71,9 +84,9 @@ def walls_of(options, positions, diameter):
     return shapes.around(found, orifice, diameter), orifice
 
 
-def check_places(walls, positions, diameter):
+def check_places(walls, positions, diameters):
     """Say how many grains stick out of the walls; raises AnalysisError where one is outside."""
-    out = walls.sticking_out(positions, diameter)
+    out = walls.sticking_out(positions, diameters)
     print(f"walls: {np.count_nonzero(out > STICKS_OUT)} of {len(out)} grains stick out by more than {STICKS_OUT} d, "
           f"the farthest by {max(out.max(), 0):.3f} d")
     if out.max() > THROUGH:
@@ -87,28 +100,31 @@ def import_packing():
     folder = writing.shared_files(options.lammps_files)
     grains = read_packing(options.packing, options.step, options.columns)
     scale = options.scale or UNITS[options.length_unit or "m"]
-    diameter = one_diameter(options, grains, scale)
-    unit = "" if options.scale else " m"
-    print(f"{options.packing}: {len(grains.positions)} grains of {diameter:.6g}{unit}, {grains.where}")
+    diameters = diameters_of(options, grains, scale)
+    diameter, unit = mean_diameter(diameters), "" if options.scale else " m"
+    of_size = f"of {diameter:.6g}{unit}" if np.ptp(diameters) == 0 else f"of {diameter:.6g}{unit} by their mean volume"
+    print(f"{options.packing}: {len(grains.positions)} grains {of_size}, {grains.where}")
     if not options.scale and not GRAINS[0] <= diameter <= GRAINS[1]:
         command_line.print_warning(f"grains of {diameter:g} m: is the file in another unit? (--length-unit mm)")
-    positions = placed(options, grains, diameter, scale)
-    walls, orifice = walls_of(options, positions, diameter)
+    if np.ptp(diameters) > EQUAL * diameter:
+        command_line.print_warning("the deck's critical packing fraction is that of equal grains: a mixture flows denser (docs/parameters.md)")
+    positions = placed(options, grains, diameters, scale)
+    walls, orifice = walls_of(options, positions, diameters)
     if walls:
-        check_places(walls, positions, diameter)
-    relaxed = relax(positions, diameter, options.overlap, walls, Progress("import", terminal_only=True))
+        check_places(walls, positions, diameters)
+    relaxed = relax(positions, diameters, options.overlap, walls, Progress("import", terminal_only=True))
     print(f"overlaps: the largest was {relaxed.before:.4f} d and is {relaxed.after:.4f} d, after {relaxed.sweeps} sweeps; no grain went "
           f"farther than {relaxed.moved:.4f} d")
-    save(options, grains, relaxed.positions, diameter, walls, orifice, folder)
+    save(options, grains, relaxed.positions, diameters, walls, orifice, folder)
 
 
-def save(options, grains, positions, diameter, walls, orifice, folder):
+def save(options, grains, positions, diameters, walls, orifice, folder):
     os.makedirs(options.output, exist_ok=True)
     data, deck = (os.path.join(options.output, name) for name in ("packing.data", "in.spot"))
-    writing.write_data(data, positions, diameter, options.density or grains.density or DENSITY, walls, orifice[2])
+    writing.write_data(data, positions, diameters, options.density or grains.density or DENSITY, walls, orifice[2])
     with open(deck, "w", encoding="utf-8") as out:
-        out.write(writing.deck(options.packing, "packing.data", positions, diameter, walls, options.walls, orifice, options.outflow,
-                               options.g or 9.81, options.run, folder, not options.scale))
+        out.write(writing.deck(options.packing, "packing.data", positions, mean_diameter(diameters), walls, options.walls, orifice,
+                               options.outflow, options.g or 9.81, options.run, folder, not options.scale))
     print(f"{data} and {deck} are written: lmp -in in.spot, in that folder")
 
 

@@ -61,12 +61,12 @@ class Walls:
         over = self._over_orifice(positions)
         return np.where(over & (height < 0), np.inf, np.min([*found, np.where(over, np.inf, height)], axis=0))
 
-    def sticking_out(self, positions, diameter):
-        """(n,) how far a grain reaches beyond any wall or the base (d), negative inside."""
-        return 0.5 - self.distances(positions) / diameter
+    def sticking_out(self, positions, diameters):
+        """(n,) how far a grain reaches beyond any wall or the base, in diameters of its own, negative inside."""
+        return 0.5 - self.distances(positions) / diameters
 
     def inside(self, positions, inset):
-        """Positions (n, 3) moved along the normals of walls and base to be at least ``inset`` from each."""
+        """Positions (n, 3) moved along the normals of walls and base to be at least ``inset``, (n,) or one, from each."""
         for plane in self.planes:
             beyond = np.maximum(positions @ plane[:3] + inset - plane[3], 0)
             positions = positions - beyond[:, None] * plane[:3] if beyond.any() else positions

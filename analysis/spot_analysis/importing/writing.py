@@ -48,11 +48,12 @@ def top_of(positions, diameter):
     return float(np.ceil(positions[:, 2].max() / diameter + ROOM_ABOVE) * diameter)
 
 
-def write_data(path, positions, diameter, density, walls, outlet):
+def write_data(path, positions, diameters, density, walls, outlet):
     """A data file of ``atom_style sphere``, with ids in the order of the positions (n, 3).
 
-    walls : Walls, or None where only their words are known; outlet : its height
+    diameters : (n,); walls : Walls, or None where only their words are known; outlet : its height
     """
+    diameter = diameters.max()
     room = diameter * (ROOM_BESIDE if walls else ROOM_FOR_WALLS)
     low, high = positions.min(axis=0) - room, positions.max(axis=0) + room
     low[2], high[2] = min(low[2], outlet - ROOM_BELOW * diameter), top_of(positions, diameter)
@@ -63,8 +64,7 @@ def write_data(path, positions, diameter, density, walls, outlet):
         out.write(f"packing made by spot-import\n\n{len(positions)} atoms\n1 atom types\n\n")
         out.writelines(f"{words(low[axis], high[axis])} {name}lo {name}hi\n" for axis, name in enumerate("xyz"))
         out.write("\nAtoms # sphere\n\n")
-        size = f"{number(diameter)} {number(density)}"
-        out.writelines(f"{index} 1 {size} {words(*position)}\n" for index, position in enumerate(positions, 1))
+        out.writelines(f"{index} 1 {words(size, density, *position)}\n" for index, (size, position) in enumerate(zip(diameters, positions), 1))
 
 
 def extent(walls):
