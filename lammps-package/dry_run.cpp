@@ -44,7 +44,7 @@ Walks walk(const DryRun& run) {
   const spot::Spots::VisitGrains visit_grains = [&run](const auto& visit) {
     for (const spot::Grain& grain : run.grains) visit(grain.position);
   };
-  spot::FreeSurface surface(parameters, *run.container, run.diameter);
+  spot::FreeSurface surface(parameters, *run.container, run.largest);
   double top = run.container->outlets().height();
   visit_grains([&](const Vector3& grain) {
     surface.add(grain);
@@ -52,7 +52,7 @@ Walks walk(const DryRun& run) {
   });
   surface.gather(alone);
 
-  spot::Spots spots(parameters, *run.container, run.diameter);
+  spot::Spots spots(parameters, *run.container, run.largest);
   const double climb = (top - run.container->outlets().height() + 2.0 * parameters.radius) / parameters.speed;
   const double window = std::min(spot::calibration::climb_in_a_window * run.diameter / parameters.speed, look * climb);
   Walks walks;
@@ -136,11 +136,12 @@ void write_slice(std::ostream& out, const DryRun& run, int across, const Vector3
 
 void write_outlets(std::ostream& out, const DryRun& run) {
   const spot::Outlets& outlets = run.container->outlets();
-  const double births_of_a_grain = spot::births_for(1.0, run.command.spots, run.diameter);
+  const spot::SpotParameters& spots = run.command.spots;
+  const double births_of_a_grain = spots.mean_grain_volume * spot::births_for(1.0, spots, run.largest);
   out << '[';
   for (std::size_t k = 0; k < outlets.size(); ++k) {
     const spot::Outlet& outlet = outlets[k];
-    const double births = run.command.spots.injection_rate.largest(k);
+    const double births = spots.injection_rate.largest(k);
     out << (k == 0 ? "" : ", ") << "{\"name\": \"" << outlet.name() << "\", \"centre\": [" << outlet.centre.x() << ", "
         << outlet.centre.y() << ", " << outlet.centre.z() << "], \"half_widths\": [" << outlet.hole->half_width(0)
         << ", " << outlet.hole->half_width(1) << "], \"births\": " << births
@@ -167,7 +168,7 @@ std::string describe(const DryRun& run) {
       << ", \"speed\": " << p.speed << ", \"diffusion\": " << p.diffusion_length() << ", \"dilation\": " << p.dilation
       << ", \"critical\": " << p.critical_fraction << ", \"dilatancy\": " << p.dilatancy
       << ", \"surface\": " << p.surface_exponent << ", \"nonaffine\": " << p.nonaffine
-      << ",\n\"spot_volume\": " << p.missing_volume(run.diameter)
+      << ",\n\"spot_volume\": " << p.missing_volume(run.largest)
       << ", \"enclosed\": " << p.spot_volume(spot::calibration::packing_fraction_of_flow) / p.influence
       << ", \"spots\": " << walks.live.size() << ", \"moves_per_time\": " << walks.moves_per_time
       << ", \"walked\": " << walks.time << ", \"steady\": " << (walks.steady ? "true" : "false") << ",\n\"outlets\": ";

@@ -17,7 +17,8 @@ struct DryRun {
   const SpotCommand& command;  // resolved
   std::shared_ptr<const spot::Container> container;
   const std::vector<spot::Grain>& grains;
-  double diameter, window, timestep;
+  double diameter, largest;  // of a grain of mean volume; of the largest, which the library's numbers go by
+  double window, timestep;
   std::int64_t steps;  // of the run
   std::string units;
   std::size_t memory;      // of the fix, before the first spot (bytes)

@@ -407,6 +407,7 @@ void FixSpot::dry_run() {
                                      model->container,
                                      grains,
                                      model->sizes.mean(),
+                                     model->sizes.largest,
                                      model->window,
                                      update->dt,
                                      update->nsteps,

@@ -41,6 +41,17 @@ def test_spots_and_moves_are_those_of_a_run(tmp_path, fix):
     assert outlet["births"] == 100 and outlet["half_widths"] == [ORIFICE, ORIFICE] and outlet["centre"] == [0, 0, 0]
 
 
+def test_unequal_grains_leave_as_they_are_asked_to(tmp_path):
+    """In grains of mean volume; V_s is what leaves for each birth."""
+    diameters = np.where(np.arange(len(lattice())) % 3 == 0, 1.0, 0.6)
+    write_data(tmp_path / "packing.data", lattice(), diameters=diameters)
+    found = dry(tmp_path, fix=FIX.replace("injection 100", "outflow 40 volume 20"))
+    grain = np.pi / 6 * np.mean(diameters**3)
+    assert found["diameter"] == pytest.approx(np.cbrt(np.mean(diameters**3)))
+    (outlet,) = found["outlets"]
+    assert outlet["outflow"] == pytest.approx(40) and outlet["births"] * found["spot_volume"] == pytest.approx(40 * grain)
+
+
 def test_slices_show_walls_and_grains(tmp_path):
     found = dry(tmp_path)
     across_y, across_x = found["slices"]
