@@ -278,6 +278,8 @@ TEST(SeveralOutletsUnit, GrainsMayBeInAnyOfThemAndNotBetween) {
   EXPECT_NO_THROW(checks.require_valid_place({7, {8.9, 3.4, -0.5}})) << "in a corner of the slot";
   EXPECT_NE(refusal({0.0, 0.0, -0.5}).find("grain 7 at (0, 0, -0.5)"), std::string::npos);
   EXPECT_NO_THROW(checks.require_left_through_orifice({{1, {-6.0, 0.0, -1.1}}, {2, {9.0, 3.0, -1.1}}}));
+  EXPECT_NO_THROW(checks.require_left_through_orifice({{1, {-2.3, 0.0, -0.05}}})) << "drawn past the rim by 0.2 d";
+  EXPECT_THROW(checks.require_left_through_orifice({{1, {-2.2, 0.0, -0.05}}}), spot::CollapsedPacking);
   const std::string beside = scenes::text_of<spot::CollapsedPacking>([&] {
     checks.require_left_through_orifice({{1, {-6.0, 0.0, -1.1}}, {2, {1.5, 0.0, -1.1}}});
   });

@@ -9,8 +9,8 @@ namespace spot {
 
 namespace {
 
-/// Grains may leave so far beside a hole, in diameters: those that a gate has held at its rim, when it opens, are drawn
-/// past that where another outlet is near.
+/// Grains may leave so far beside one of several holes, in diameters: those that a gate has held at its rim, when it
+/// opens, are drawn past that where another outlet is near.
 constexpr double beside_hole = 0.25;
 
 }  // namespace
@@ -79,9 +79,10 @@ void GrainChecks::require_no_collapse(const Overlap& largest) const {
 }
 
 void GrainChecks::require_left_through_orifice(const std::vector<Grain>& drained) const {
+  const double beside = container_->outlets().size() > 1 ? beside_hole * diameter_ : 0.0;
   for (const Grain& grain : drained) {
     const Vector3& centre = grain.position;
-    if (container_->may_have_left_to(centre) || container_->is_over_outlet(centre, beside_hole * diameter_)) continue;
+    if (container_->may_have_left_to(centre) || (beside > 0.0 && container_->is_over_outlet(centre, beside))) continue;
     throw CollapsedPacking(message("grain ", grain.id, " at (", centre.x(), ", ", centre.y(), ", ", centre.z(),
                                    ") left through the base, beside the ", container_->nearest_outlet(centre).name(),
                                    ": relax more, or let spots displace less at a time"));

@@ -55,8 +55,8 @@ class GrainChecks {
   /// CollapsedPacking, if they overlap more deeply than is allowed in flow.
   void require_no_collapse(const Overlap& largest) const;
 
-  /// CollapsedPacking, if one of them left through a wall instead of an outlet, more than a fourth of a grain beside
-  /// it.
+  /// CollapsedPacking, if one of them left through a wall instead of an outlet; of several outlets, more than a fourth
+  /// of a grain beside it.
   void require_left_through_orifice(const std::vector<Grain>& drained) const;
 
  private:
