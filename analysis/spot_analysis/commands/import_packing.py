@@ -35,11 +35,11 @@ def diameters_of(options, grains, scale):
     if spread <= EQUAL:
         return np.full(n, mean * scale)
     sizes = f"diameters are {low * scale:.6g} to {high * scale:.6g}, up to {100 * spread:.2g} % off their mean"
-    if options.equal_sizes and spread <= NEARLY_EQUAL:
+    if options.equal_sizes:
+        if spread > NEARLY_EQUAL:
+            raise AnalysisError(f"{options.packing}: {sizes}; --equal-sizes makes equal what is within 1 %: leave it out")
         print(f"sizes: {sizes}; all have {mean * scale:.6g} now")
         return np.full(n, mean * scale)
-    if options.equal_sizes:
-        raise AnalysisError(f"{options.packing}: {sizes}; --equal-sizes makes equal what is within 1 %: leave it out")
     if high > WIDEST * low:
         raise AnalysisError(f"{options.packing}: {sizes}; no grain may be more than {WIDEST} times as wide as another")
     print(f"sizes: {sizes}; they stay as they are" + (", though --equal-sizes would drain faster" if spread <= NEARLY_EQUAL else ""))
@@ -63,7 +63,8 @@ def mean_diameter(diameters):
 
 def walls_of(options, positions, diameters):
     """Walls, or None where only their words are known, and (x, y, z, R) of the orifice."""
-    height, diameter = options.orifice[2] if len(options.orifice) == 4 else 0.0, mean_diameter(diameters)
+    height = options.orifice[2] if len(options.orifice) == 4 else 0.0
+    diameter = mean_diameter(diameters)
     if options.walls:
         return None, tuple(options.orifice)
     if options.fit:

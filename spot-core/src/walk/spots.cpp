@@ -71,12 +71,13 @@ void Spots::step_until(double until, const Container& container, Workers& worker
     for (std::size_t k = first; k < last; ++k) {
       Spot& spot = places_[k].spot;
       if (places_[k].removed || !(spot.next_step <= until)) continue;
+      const std::size_t before = stepped.moves.size();
       while (spot.next_step <= until)
         if (stands(spot))
           walk_.wait(spot);
         else
           stepped.moves.push_back(walk_.step(spot, container, surface_, flow_));
-      stepped.ends.push_back({k, stepped.moves.size()});
+      if (stepped.moves.size() > before) stepped.ends.push_back({k, stepped.moves.size()});
     }
   };
   if (container.concurrent())
