@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is measured of a round hopper, on flows that are known, and what its command says of input that does not fit."""
 
+import dataclasses
 import json
 
 import numpy as np
@@ -54,6 +55,19 @@ def test_rings_end_at_the_wall():
     assert SCENE.radius_at(5.0) == 8.0 and SCENE.radius_at(30.0) == 12.0
 
 
+def test_times_and_places_count_from_opening_and_outlet():
+    """A run that was moved in space and time shows the same, to the last grain."""
+    moved = dataclasses.replace(SCENE, opening_time=350.0, axis_x=3.0, axis_y=-5.0, base_z=7.0)
+    flow = lambda r: 0.5 * np.exp(-r / 6)
+    later = [Frame(frame.timestep + 700, frame.ids, frame.positions + [3.0, -5.0, 7.0], frame.box) for frame in falling_frames(flow)]
+    here, there = axial_flow.measure(falling_frames(flow), SCENE, 4, 24), axial_flow.measure(later, moved, 4, 24)
+    assert here.keys() == there.keys()
+    for name, value in here.items():
+        assert there[name] == pytest.approx(value, rel=1e-9, abs=1e-12, nan_ok=True), name
+    with pytest.raises(ValueError, match="0 snapshots"):
+        axial_flow.measure(later, SCENE, 4, 24)
+
+
 def test_too_short_an_interval_is_refused():
     with pytest.raises(ValueError, match="2 snapshots between 0 and 2 tau"):
         axial_flow.measure(falling_frames(lambda r: 0.5 + 0 * r), SCENE, 0, 2)
@@ -87,11 +101,17 @@ def test_the_command_compares_and_keeps_statistics(tmp_path):
 @pytest.mark.parametrize("values, said", [
     ({"cylinder_radius": None}, "'cylinder_radius' must be a positive number"),
     ({"orifice_radius": 30.0}, "'orifice_radius' must be below"),
-    ({"diameter": -1.0}, "'diameter' must be a positive number")])
+    ({"diameter": -1.0}, "'diameter' must be a positive number"), ({"opening_time": "0"}, "'opening_time' must be a number"),
+    ({"base_z": None}, "'base_z' must be a number"), ({"base": 1.0}, "unknown scene key 'base'")])
 def test_scenes_that_do_not_fit_are_named(tmp_path, values, said):
     tmp_path.joinpath("scene.json").write_text(json.dumps({**vars(SCENE), **values}))
-    with pytest.raises(SceneError, match=said):
+    with pytest.raises(SceneError, match=f"scene.json: .*{said}"):
         load_axial_scene(tmp_path)
+
+
+def test_scenes_as_decks_write_them(tmp_path):
+    tmp_path.joinpath("scene.json").write_text(json.dumps({**vars(SCENE), "cone_angle": 38.7, "program": "LIGGGHTS", "opening_time": 2}))
+    assert load_axial_scene(tmp_path) == dataclasses.replace(SCENE, program="LIGGGHTS", opening_time=2)
 
 
 def test_other_scenes_are_refused(tmp_path):

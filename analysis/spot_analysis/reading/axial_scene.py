@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A hopper that is round about a vertical axis: a cone under an upright cylinder, as ``scene.json`` beside the dumps tells it."""
 
-import math
-import os
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 
 from ..base.errors import SceneError
 from .json_object import read_object
-from .scene import FILE_NAME
+from .origin import Origin, check_numbers
+from .scene import path_beside
 
 
 @dataclass(frozen=True)
-class AxialScene:
-    """Lengths and times in the units of the dump; the axis is x = y = 0 and the outlet lies at z = 0.
+class AxialScene(Origin):
+    """Lengths and times in the units of the dump; the axis is vertical and the outlet lies at its lower end.
 
-    diameter, gravity, timestep : as in ``Scene``
+    diameter, gravity, timestep, opening_time, axis_x, axis_y, base_z, program, grains : as in ``Scene``
     orifice_radius, cylinder_radius : of the cone's ends
-    cone_height : where the cone ends and the cylinder begins
+    cone_height : from the outlet to where the cone ends and the cylinder begins
     """
 
     diameter: float
@@ -25,32 +24,42 @@ class AxialScene:
     orifice_radius: float
     cylinder_radius: float
     cone_height: float
+    opening_time: float = 0.0
+    axis_x: float = 0.0
+    axis_y: float = 0.0
+    base_z: float = 0.0
+    program: str = "unknown"
+    grains: int = None
 
     def __post_init__(self):
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or value <= 0:
-                raise SceneError(f"scene: '{field.name}' must be a positive number, not {value!r}")
+        check_numbers(self, NUMBERS, ORIGIN)
         if self.orifice_radius >= self.cylinder_radius:
             raise SceneError("scene: 'orifice_radius' must be below 'cylinder_radius'")
 
-    @property
-    def tau(self):
-        """sqrt(d/g) in the dump's unit of time."""
-        return math.sqrt(self.diameter / self.gravity)
-
     def radius_at(self, height):
-        """Radius of the inside at a height, both in d."""
+        """Radius of the inside at a height, both in d; that of the outlet below it."""
         rim, side, shoulder = (length / self.diameter for length in (self.orifice_radius, self.cylinder_radius, self.cone_height))
-        return min(side, rim + (side - rim) * height / shoulder)
+        return min(side, rim + (side - rim) * max(height, 0.0) / shoulder)
 
 
-def load_axial_scene(folder):
-    """The scene beside the dumps in ``folder``; raises SceneError naming the file and what is missing."""
-    path = os.path.join(folder, FILE_NAME)
-    names = [field.name for field in fields(AxialScene)]
-    values = read_object(path, f"the keys {', '.join(names)}")
-    missing = [name for name in names if name not in values]
+NUMBERS = tuple(f.name for f in fields(AxialScene) if f.type is float and f.default is MISSING)
+ORIGIN = tuple(f.name for f in fields(AxialScene) if f.type is float and f.default is not MISSING)  # of time and space
+KEYS = (*(f.name for f in fields(AxialScene)), "cone_angle")  # which follows from the others; decks of LIGGGHTS write it
+
+
+def load_axial_scene(source):
+    """The scene of the dumps ``source`` (a folder, file or wildcard); raises SceneError naming the file, and what is missing, unknown
+    or bad."""
+    path = path_beside(source)
+    values = read_object(path, f"the keys {', '.join(NUMBERS)}")
+    missing = [name for name in NUMBERS if name not in values]
     if missing:
         raise SceneError(f"{path}: no hopper, '{missing[0]}' is missing")
-    return AxialScene(**{name: values[name] for name in names})
+    unknown = [key for key in values if key not in KEYS]
+    if unknown:  # it would change what the others mean
+        raise SceneError(f"{path}: unknown scene key '{unknown[0]}'; those of a hopper are {', '.join(KEYS)}")
+    values.pop("cone_angle", None)
+    try:
+        return AxialScene(**values)
+    except SceneError as error:
+        raise SceneError(f"{path}: {error}") from error

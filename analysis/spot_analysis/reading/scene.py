@@ -2,15 +2,13 @@
 """What a dump does not say: units and geometry of the run, read from the ``scene.json`` beside the dumps."""
 
 import glob
-import math
 import os
 from dataclasses import MISSING, asdict, dataclass, fields
-
-import numpy as np
 
 from ..base.errors import SceneError
 from .container import Container, check_orifices
 from .json_object import read_object
+from .origin import Origin, check_numbers
 
 FILE_NAME = "scene.json"
 PERIOD_KEY = "half_period_y"
@@ -18,7 +16,7 @@ LEAST_PERIOD = 12.0  # d; twice as far as pairs of grains are looked for
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(Origin):
     """Units and geometry, in the units of the dump.
 
     diameter, gravity, timestep : grain diameter d; acceleration g; time of one step of the dumps' TIMESTEP
@@ -49,12 +47,7 @@ class Scene:
     slot: bool = False
 
     def __post_init__(self):
-        for key in NUMBERS:
-            if not _is_finite(getattr(self, key)) or getattr(self, key) <= 0:
-                raise SceneError(f"scene: '{key}' must be a positive number, not {getattr(self, key)!r}")
-        for key in ORIGIN:
-            if not _is_finite(getattr(self, key)):
-                raise SceneError(f"scene: '{key}' must be a number, not {getattr(self, key)!r}")
+        check_numbers(self, NUMBERS, ORIGIN)
         if not isinstance(self.program, str):
             raise SceneError(f"scene: 'program' must be a text, not {self.program!r}")
         check_orifices(self.orifices, self.slot)
@@ -62,19 +55,6 @@ class Scene:
             raise SceneError(f"scene: '{PERIOD_KEY}' is {self.half_depth_y:g}, half of a period of "
                              f"{2 * self.half_depth_y / self.diameter:g} d, but must be half of {LEAST_PERIOD:g} d or more: no pair "
                              "of grains may be counted twice")
-
-    @property
-    def tau(self):
-        """sqrt(d/g) in the dump's unit of time."""
-        return math.sqrt(self.diameter / self.gravity)
-
-    def time(self, timestep):
-        """Time since the orifice was opened, in tau."""
-        return (timestep * self.timestep - self.opening_time) / self.tau
-
-    def positions(self, positions):
-        """Positions (n, 3) of a dump in d, from where the axis meets the base."""
-        return (positions - np.array([self.axis_x, self.axis_y, self.base_z])) / self.diameter
 
     def container(self):
         """The container in units of d."""
@@ -87,10 +67,6 @@ class Scene:
         if values.pop("periodic_y"):
             values[PERIOD_KEY] = values.pop("half_depth_y")
         return values
-
-
-def _is_finite(value):
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 KEYS = (*(f.name for f in fields(Scene) if f.name != "periodic_y"), PERIOD_KEY)

@@ -41,8 +41,7 @@ def measure(frames, scene, start, end):
 
     Raises ValueError if fewer than three snapshots lie in the interval.
     """
-    snapshots = [Snapshot(frame.timestep * scene.timestep / scene.tau, frame.ids, frame.positions / scene.diameter)
-                 for frame in frames]
+    snapshots = [Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions)) for frame in frames]
     inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
     if len(inside) < 3:
         raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
