@@ -10,6 +10,7 @@ from ..reading.scene import NUMBERS, ORIGIN, load_scene
 from ..report import left_out
 from ..statistics import run_statistics
 from ..statistics.measuring import measure_dumps
+from ..statistics.passages import ROUNDS
 from ..statistics.scene_fit import require_diameter
 
 
@@ -39,8 +40,8 @@ def open_run(source, options, prefix, label, concepts=run_statistics.CONCEPTS):
 
 
 def frames_of_equal_grains(source, scene):
-    """The frames of dumps; raises SceneError where grains cannot have the scene's diameter."""
-    for frame in read_frames(source, extra=("radius",), warn=print_warning):
+    """The frames of dumps, with what counts rounds; raises SceneError where grains cannot have the scene's diameter."""
+    for frame in read_frames(source, extra=("radius", ROUNDS), warn=print_warning):
         require_diameter(scene, frame)
         yield frame
 

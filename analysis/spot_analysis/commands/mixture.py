@@ -5,6 +5,7 @@ from ..reading.dump import read_frames
 from ..reading.scene import load_scene
 from ..report import plots_mixture
 from ..statistics import mixture
+from ..statistics.passages import ROUNDS
 from ..statistics.scene_fit import require_one_round_orifice
 from . import command_line, quantities
 
@@ -12,7 +13,7 @@ from . import command_line, quantities
 def _measure(folder, start, end):
     scene = load_scene(folder)
     require_one_round_orifice(scene)
-    return mixture.measure(read_frames(folder, extra=("radius",), warn=command_line.print_warning), scene, start, end)
+    return mixture.measure(read_frames(folder, extra=("radius", ROUNDS), warn=command_line.print_warning), scene, start, end)
 
 
 def compare():

@@ -48,7 +48,7 @@ def find_dumps(source):
 def read_frames(source, extra=(), warn=warnings.warn):
     """Yield the frames of ``source`` (see ``find_dumps``) in the order of their timesteps.
 
-    extra : names of further columns to return where the file has them
+    extra : names or wildcards of further columns to return where the file has them
     warn : called with one line of text when a frame is left out because its timestep was read already (runs
         continued from a restart write one twice)
 

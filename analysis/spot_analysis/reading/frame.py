@@ -2,6 +2,7 @@
 """One frame of a dump: which columns are read, the table, and its checks."""
 
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 
 import numpy as np
 
@@ -37,7 +38,7 @@ def read_frame(lines, extra):
     if "id" not in columns:
         raise lines.error(f"column 'id' is missing (the columns are: {' '.join(columns) or 'none'})")
     coordinates = [_coordinate(axis, periodic, columns, lines) for axis, periodic in zip(AXES, header["PERIODIC"])]
-    optional = [name for name in extra if name in columns]
+    optional = [name for name in columns if name in extra or any(fnmatchcase(name, pattern) for pattern in extra)]
     wanted = ["id", *(name for one in coordinates for name in one.names()), *optional]
     table = _read_table(lines, count, columns, wanted)
     table = table[np.argsort(table[:, 0], kind="stable")]

@@ -4,24 +4,15 @@
 Lengths are in grain diameters d, times in tau = sqrt(d/g). Standard errors are over pairs of successive snapshots.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
+
+from .passages import falls, outflow, residence_times, snapshots_of
 
 HEIGHTS = (5.0, 10.0, 15.0, 20.0)  # d, of the profiles
 HALF_SLAB = 1.0  # d
 RING = 2.0  # d, width of the rings of a profile
 LEVELS = (5.0, 10.0)  # d, from which residence is counted
 CORE = 8.0  # d, radius within which the packing fraction is counted
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """In d and tau."""
-
-    time: float
-    ids: np.ndarray
-    positions: np.ndarray
 
 
 def mean_of(values):
@@ -39,25 +30,20 @@ def measure(frames, scene, start, end):
     frames : Frames of a drainage in the order of time; scene : AxialScene
     start, end : the interval, tau
 
-    Raises ValueError if fewer than three snapshots lie in the interval.
+    Raises ValueError if fewer than three snapshots lie in the interval, or if they do not tell what leaves.
     """
-    snapshots = [Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions)) for frame in frames]
+    snapshots = snapshots_of(frames, scene)
     inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
     if len(inside) < 3:
         raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
     pairs = list(zip(inside, inside[1:]))
-    found = {"outflow": mean_of([left(before, after) / (after.time - before.time) for before, after in pairs])}
+    found = {"outflow": mean_of(outflow(pairs))}
     for height in HEIGHTS:
         found.update(_profile(pairs, height, scene.radius_at(height)))
     found["packing_fraction"] = mean_of([_packing_fraction(s, scene) for s in inside])
     for level in LEVELS:
         found[f"residence_median_{level:g}d"] = mean_of(residence_medians(snapshots, level, start, end))
     return found
-
-
-def left(before, after):
-    """How many grains have gone through the outlet."""
-    return np.count_nonzero(before.positions[:, 2] > 0) - np.count_nonzero(after.positions[:, 2] > 0)
 
 
 def _profile(pairs, height, radius):
@@ -81,13 +67,6 @@ def speeds_at(before, after, height, edges, place):
         return np.histogram(at, edges, weights=fall[slab] / (after.time - before.time))[0] / np.histogram(at, edges)[0]
 
 
-def falls(before, after):
-    """Of grains in both snapshots: where they were between, and how far they have come down; in d."""
-    _, first, second = np.intersect1d(before.ids, after.ids, assume_unique=True, return_indices=True)
-    return ((before.positions[first] + after.positions[second]) / 2,
-            before.positions[first, 2] - after.positions[second, 2])
-
-
 def _packing_fraction(snapshot, scene):
     """Of the core of the cylinder, from its lower end to 6 d above: grain volume by centres."""
     low = scene.cone_height / scene.diameter
@@ -97,18 +76,6 @@ def _packing_fraction(snapshot, scene):
 
 
 def residence_medians(snapshots, level, start, end):
-    """Medians, for each snapshot in the interval, of the times that grains which leave then have taken from a level."""
-    passed, medians = {}, []
-    for before, after in zip(snapshots, snapshots[1:]):
-        later = dict(zip(after.ids.tolist(), after.positions[:, 2].tolist()))
-        stayed = []
-        for grain, height in zip(before.ids.tolist(), before.positions[:, 2].tolist()):
-            now = later.get(grain, -np.inf)
-            if height >= level > now and grain not in passed:
-                share = (height - level) / (height - max(now, 0.0))
-                passed[grain] = before.time + share * (after.time - before.time)
-            if height > 0.0 >= now and grain in passed:
-                stayed.append((before.time + after.time) / 2 - passed[grain])
-        if stayed and start <= before.time and after.time <= end:
-            medians.append(np.median(stayed))
-    return medians
+    """Medians, for each pair of snapshots in the interval, of the times that grains which leave then have taken from a level."""
+    return [np.median(stayed) for before, after, _, stayed in residence_times(snapshots, level)
+            if len(stayed) and start <= before.time and after.time <= end]

@@ -7,7 +7,8 @@ Lengths are in grain diameters d, times in tau = sqrt(d/g). Standard errors are 
 
 import numpy as np
 
-from .axial_flow import Snapshot, falls, left, mean_of, residence_medians, speeds_at
+from .axial_flow import mean_of, residence_medians, speeds_at
+from .passages import drained, falls, outflow, snapshots_of
 
 HEIGHTS = (5.0, 10.0, 15.0)  # d, of the profiles
 LEVELS = (5.0, 10.0)  # d, from which residence is counted
@@ -24,14 +25,15 @@ def measure(frames, scene, start, end):
     frames : Frames of a drainage in the order of time; scene : Scene of the box
     start, end : the interval, tau
 
-    With one outlet profiles are along |x|, otherwise along x. Raises ValueError if fewer than three snapshots lie in the interval.
+    With one outlet profiles are along |x|, otherwise along x. Raises ValueError if fewer than three snapshots lie in the interval, or
+    if they do not tell what leaves.
     """
-    snapshots = [Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions)) for frame in frames]
+    snapshots = snapshots_of(frames, scene)
     inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
     if len(inside) < 3:
         raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
     pairs = list(zip(inside, inside[1:]))
-    found = {"outflow": mean_of([left(*pair) / (pair[1].time - pair[0].time) for pair in pairs])}
+    found = {"outflow": mean_of(outflow(pairs))}
     outlets = scene.container().middles
     if len(outlets) > 1:
         found.update(_outflows(pairs, outlets))
@@ -51,10 +53,8 @@ def _outflows(pairs, outlets):
     """Of each outlet: what leaves goes to the one whose middle was nearest before."""
     rates = []
     for before, after in pairs:
-        above = after.ids[after.positions[:, 2] > 0]
-        gone = (before.positions[:, 2] > 0) & ~np.isin(before.ids, above)
-        nearest = np.abs(before.positions[gone, :1] - np.array(outlets)).argmin(axis=1)
-        rates.append(np.bincount(nearest, minlength=len(outlets)) / (after.time - before.time))
+        nearest = np.abs(before.positions[:, :1] - np.array(outlets)).argmin(axis=1)
+        rates.append(np.bincount(nearest, drained(before, after), minlength=len(outlets)) / (after.time - before.time))
     return {f"outflow_at_x{x:g}d": mean_of(np.array(rates)[:, k]) for k, x in enumerate(outlets)}
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from .axial_flow import mean_of
 from .lacey import lacey_index
+from .passages import Snapshot, common, drained, falls, outflow, snapshots_of
 from .residence_by_size import LEVEL, residence
 from .surface_share import surface_share
 
@@ -24,10 +25,7 @@ SLICE = 5.0  # tau, in which the composition of what leaves is counted
 
 
 @dataclass(frozen=True)
-class _Snapshot:
-    time: float
-    ids: np.ndarray
-    positions: np.ndarray
+class _Snapshot(Snapshot):
     volumes: np.ndarray
     large: np.ndarray
 
@@ -50,6 +48,7 @@ def measure(frames, scene, start, end):
     if len(inside) < 3:
         raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
     pairs = list(zip(inside, inside[1:]))
+    outflow(pairs)  # refuses dumps that do not tell what leaves
     left = np.array([_left(before, after) for before, after in pairs])  # small, large
     times = np.array([after.time - before.time for before, after in pairs])
     found = {"outflow": mean_of(left.sum(axis=1) / times), "large_share_left": _share(left)}
@@ -68,24 +67,23 @@ def measure(frames, scene, start, end):
 
 
 def _snapshots(frames, scene):
-    snapshots, split = [], None
-    for frame in frames:
-        radius = frame.extra.get("radius")
-        if radius is None:
-            raise ValueError("the dumps have no column 'radius'")
-        if split is None:
-            if len(radius) == 0:
-                raise ValueError("the first snapshot has no grains")
-            split = (radius.min() + radius.max()) / 2
-        volumes = (2 * radius / scene.diameter) ** 3
-        snapshots.append(_Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions), volumes, radius > split))
+    frames = list(frames)
+    if any("radius" not in frame.extra for frame in frames):
+        raise ValueError("the dumps have no column 'radius'")
+    if not frames or len(frames[0].ids) == 0:
+        raise ValueError("the first snapshot has no grains")
+    split = (frames[0].extra["radius"].min() + frames[0].extra["radius"].max()) / 2
+    snapshots = []
+    for frame, plain in zip(frames, snapshots_of(frames, scene)):
+        radius = frame.extra["radius"]
+        snapshots.append(_Snapshot(**vars(plain), volumes=(2 * radius / scene.diameter) ** 3, large=radius > split))
     return snapshots
 
 
 def _left(before, after):
     """Volume of small and of large grains that has left through the orifice."""
-    return [sum(sign * s.volumes[s.inside & (s.large == large)].sum() for sign, s in ((1, before), (-1, after)))
-            for large in (False, True)]
+    volumes = before.volumes * drained(before, after)
+    return [volumes[before.large == large].sum() for large in (False, True)]
 
 
 def _share(left):
@@ -109,9 +107,10 @@ def _composition(snapshots):
 
 def _common(before, after):
     """Of grains in both snapshots: index in the second, where they were between, d, and how fast they fall, d/tau."""
-    _, first, second = np.intersect1d(before.ids, after.ids, assume_unique=True, return_indices=True)
-    middle = (before.positions[first] + after.positions[second]) / 2
-    return second, middle, (before.positions[first, 2] - after.positions[second, 2]) / (after.time - before.time)
+    first, second = common(before, after)
+    stays = before.rounds[first] == after.rounds[second]
+    middle, fall = falls(before, after)
+    return second[stays], middle, fall / (after.time - before.time)
 
 
 def _profile(pairs, height, half_width):
