@@ -98,6 +98,31 @@ def test_the_command_compares_and_keeps_statistics(tmp_path):
     assert said.returncode == 1 and "holds the interval 4 to 24 tau, not 4 to 20" in said.stderr
 
 
+def test_one_run_is_told(tmp_path):
+    """Without a file to keep, and with one, whose interval is then the default."""
+    run, kept = write_run(tmp_path / "run"), tmp_path / "kept.json"
+    told = script("hopper.py", run, "--from", 4, "--to", 20)
+    assert told.returncode == 0 and told.stdout.startswith("| 4 to 20 tau | "), told.stderr
+    rows = dict(line.split("|")[1:3] for line in told.stdout.splitlines()[2:])
+    assert float(rows[" outflow "].split("+-")[0]) == pytest.approx(5, rel=0.3)
+    assert not any(words.strip() in ("", "nan") for words in rows.values())
+    assert script("hopper.py", run, "--from", 4, "--to", 20, "-o", kept).returncode == 0
+    assert script("hopper.py", kept).stdout == told.stdout.replace(str(run), str(kept))
+    said = script("hopper.py", kept, run)
+    assert said.returncode == 0 and said.stdout.startswith("| 4 to 20 tau |") and "+0.0 %" in said.stdout, said.stderr
+
+
+def test_a_file_that_keeps_less_is_unknown_there(tmp_path):
+    """Statistics of before have fewer quantities; what they lack is told all the same."""
+    run, kept = write_run(tmp_path / "run"), tmp_path / "kept.json"
+    kept.write_text(json.dumps({"interval": [4, 20], "quantities": {"outflow": [5.0, 0.1]}}))
+    said = script("hopper.py", kept, run)
+    assert said.returncode == 0 and "| speed_5d_r1.0d | unknown | 0.5" in said.stdout, said.stderr
+    kept.write_text(json.dumps({"interval": [4, 20]}))
+    said = script("hopper.py", kept, run)
+    assert said.returncode == 1 and said.stderr.startswith(f"error: {kept}: no statistics of --output"), said.stderr
+
+
 @pytest.mark.parametrize("values, said", [
     ({"cylinder_radius": None}, "'cylinder_radius' must be a positive number"),
     ({"orifice_radius": 30.0}, "'orifice_radius' must be below"),

@@ -16,5 +16,8 @@ def _draw(path, reference, spot):
     plots_fall.save_profiles(path, reference, spot, box_flow.HEIGHTS, "x")
 
 
+KIND = quantities.Kind("box", 20.0, _measure, _draw)
+
+
 def main():
-    command_line.run(lambda: quantities.compare_profiles(__doc__, 20.0, "box", _measure, _draw))
+    command_line.run(lambda: quantities.run_command(__doc__, KIND))

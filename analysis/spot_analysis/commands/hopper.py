@@ -16,5 +16,8 @@ def _draw(path, reference, spot):
     plots_fall.save_profiles(path, reference, spot, axial_flow.HEIGHTS, "r")
 
 
+KIND = quantities.Kind("hopper", 50.0, _measure, _draw)
+
+
 def main():
-    command_line.run(lambda: quantities.compare_profiles(__doc__, 50.0, "hopper", _measure, _draw))
+    command_line.run(lambda: quantities.run_command(__doc__, KIND))

@@ -16,17 +16,9 @@ def _measure(folder, start, end):
     return mixture.measure(read_frames(folder, extra=("radius", ROUNDS), warn=command_line.print_warning), scene, start, end)
 
 
-def compare():
-    options = quantities.parse_arguments(__doc__, "Lengths are in d, that of a grain of mean volume; times in tau.", end=30.0,
-                                         plot="draws profiles of the fall, and the composition of what leaves")
-    reference, *runs = [quantities.statistics(run, options, "mixture", _measure) for run in options.runs]
-    quantities.keep(reference, options)
-    spot = quantities.pooled(runs) if runs else {}
-    quantities.print_table(reference, spot, options)
-    if options.plot:
-        plots_mixture.save(options.plot, reference, spot)
-        print(f"{options.plot}: profiles of the fall, composition of what leaves")
+KIND = quantities.Kind("mixture", 30.0, _measure, plots_mixture.save, "profiles of the fall, composition of what leaves")
+UNITS = "Lengths are in d, that of a grain of mean volume; times in tau."
 
 
 def main():
-    command_line.run(compare)
+    command_line.run(lambda: quantities.run_command(__doc__, KIND, UNITS))

@@ -4,24 +4,43 @@ and mixtures share."""
 
 import argparse
 import json
-import math
 import os
+from dataclasses import dataclass
+from typing import Callable
 
 from ..base.errors import AnalysisError
+from ..report import quantity_table
+
+START = 10.0  # tau, default of --from
 
 
-def parse_arguments(description, epilog, end, plot):
-    """end : default of --to, tau; plot : help of --plot"""
+@dataclass(frozen=True)
+class Kind:
+    """A kind of scene and how it is measured.
+
+    what : its name; end : default of --to, tau
+    measure(folder, start, end) : quantities of dumps; raises ValueError where they do not suffice
+    draw(path, reference, spot) : writes the plot, which shows ``drawn``
+    """
+
+    what: str
+    end: float
+    measure: Callable
+    draw: Callable
+    drawn: str = "profiles of the fall"
+
+
+def parse_arguments(description, epilog, drawn, end):
+    """drawn : what --plot shows; end : default of --to, in words"""
     parser = argparse.ArgumentParser(description=description, epilog=epilog)
     parser.add_argument("runs", nargs="+", metavar="RUN",
-                        help="folder of dumps with scene.json, or a file of --output; the first is what the others are compared with")
-    parser.add_argument("--from", dest="start", type=float, default=10.0, metavar="TAU", help="default: %(default)g")
-    parser.add_argument("--to", dest="end", type=float, default=end, metavar="TAU", help="default: %(default)g")
-    parser.add_argument("--plot", metavar="FILE.png", help=plot)
+                        help="folder of dumps with scene.json, or a file of --output; the first is what the others are compared with, "
+                             "alone it is measured")
+    parser.add_argument("--from", dest="start", type=float, metavar="TAU", help=f"default: that of a file of --output, or {START:g}")
+    parser.add_argument("--to", dest="end", type=float, metavar="TAU", help=f"default: that of a file of --output, or {end}")
+    parser.add_argument("--plot", metavar="FILE.png", help=f"draws {drawn}")
     parser.add_argument("-o", "--output", metavar="FILE.json", help="keeps the statistics of the first run")
     options = parser.parse_args()
-    if not 0 <= options.start < options.end:
-        parser.error("--from must not be negative, and below --to")
     if options.output and not options.output.endswith(".json"):
         parser.error(f"--output '{options.output}' must end in .json")
     if options.plot and len(options.runs) == 1:
@@ -29,23 +48,43 @@ def parse_arguments(description, epilog, end, plot):
     return options
 
 
-def statistics(source, options, what, measure):
+def choose_interval(options, default_end):
+    """Fills in the ends of the interval that were not given: those of the first file of statistics, or the defaults."""
+    stored = next((read_stored(run)["interval"] for run in options.runs if is_stored(run)), [START, default_end])
+    options.start = stored[0] if options.start is None else options.start
+    options.end = stored[1] if options.end is None else options.end
+    if not 0 <= options.start < options.end:
+        raise AnalysisError(f"the interval {options.start:g} to {options.end:g} tau: --from must not be negative, and below --to")
+
+
+def is_stored(source):
+    return source.endswith(".json")
+
+
+def read_stored(source):
+    """The interval and the quantities in a file of --output."""
+    try:
+        with open(source, encoding="utf-8") as handle:
+            stored = json.load(handle)
+        (start, end), quantities = stored["interval"], stored["quantities"]
+        return {"interval": [float(start), float(end)], "quantities": {name: [*map(float, quantities[name])] for name in quantities}}
+    except (ValueError, KeyError, TypeError) as error:
+        raise AnalysisError(f"{source}: no statistics of --output ({error})") from error
+
+
+def statistics(source, options, measure):
     """Quantities of a folder of dumps, by measure(folder, start, end), or of a file that --output wrote, whose interval must be the
-    same. what : these statistics are of."""
-    if not source.endswith(".json"):
+    same."""
+    if not is_stored(source):
         try:
             return measure(source, options.start, options.end)
         except ValueError as error:
             raise AnalysisError(f"{source}: {error}") from error
-    try:
-        with open(source, encoding="utf-8") as handle:
-            stored = json.load(handle)
-        if stored["interval"] != [options.start, options.end]:
-            raise AnalysisError(f"{source}: holds the interval {stored['interval'][0]:g} to {stored['interval'][1]:g} tau, not "
-                                f"{options.start:g} to {options.end:g}")
-        return stored["quantities"]
-    except (ValueError, KeyError, TypeError) as error:
-        raise AnalysisError(f"{source}: no statistics of a {what} ({error})") from error
+    stored = read_stored(source)
+    start, end = stored["interval"]
+    if [start, end] != [options.start, options.end]:
+        raise AnalysisError(f"{source}: holds the interval {start:g} to {end:g} tau, not {options.start:g} to {options.end:g}")
+    return stored["quantities"]
 
 
 def keep(quantities, options):
@@ -58,44 +97,19 @@ def keep(quantities, options):
     print(f"{options.output}: {len(quantities)} quantities, {os.path.getsize(options.output)} bytes")
 
 
-def pooled(runs):
-    """Mean over runs, with the standard error over them where there are several."""
-    pooled = {}
-    for name in runs[0]:
-        values = [run.get(name, [math.nan, math.nan]) for run in runs]
-        mean = sum(value for value, _ in values) / len(values)
-        spread = math.sqrt(sum((value - mean) ** 2 for value, _ in values) / max(len(values) - 1, 1) / len(values))
-        pooled[name] = [mean, spread if len(values) > 1 else values[0][1]]
-    return pooled
-
-
-def print_table(reference, spot, options):
-    """A row for each quantity of the reference; those that ``spot`` lacks are unknown."""
-    heading = [options.runs[0], f"{len(options.runs) - 1} of spot", "difference"]
-    print(f"| {options.start:g} to {options.end:g} tau | " + " | ".join(heading) + " |\n|---|---|---|---|")
-    for name, value in reference.items():
-        print(_row(name, value, spot.get(name, [math.nan, math.nan])))
-
-
-def _row(name, reference, spot):
-    words = [f"{value:.4g} +- {error:.2g}" if math.isfinite(value) else "unknown" for value, error in (reference, spot)]
-    known = math.isfinite(reference[0]) and math.isfinite(spot[0]) and reference[0] != 0
-    return "| " + " | ".join([name, *words, f"{100 * (spot[0] / reference[0] - 1):+.1f} %" if known else ""]) + " |"
-
-
-def compare_profiles(description, end, what, measure, draw):
-    """What a command does whose plot has profiles of the fall.
-
-    description, end : see parse_arguments; what, measure : see statistics
-    draw(path, reference, spot) : writes the plot
-    """
-    options = parse_arguments(description, "Lengths are in d, times in tau.", end=end, plot="draws the profiles of the fall")
-    reference, *runs = [statistics(run, options, what, measure) for run in options.runs]
+def compare(options, kind):
+    """Measures the runs, all of a Kind, and says what a command says of them."""
+    choose_interval(options, kind.end)
+    reference, *runs = [statistics(run, options, kind.measure) for run in options.runs]
     keep(reference, options)
-    if not runs:
-        return
-    spot = pooled(runs)
-    print_table(reference, spot, options)
+    spot = quantity_table.pooled(runs) if runs else None
+    interval = f"{options.start:g} to {options.end:g} tau"
+    print("\n".join(quantity_table.lines(interval, options.runs[0], reference, spot, len(runs))))
     if options.plot:
-        draw(options.plot, reference, spot)
-        print(f"{options.plot}: profiles of the fall")
+        kind.draw(options.plot, reference, spot)
+        print(f"{options.plot}: {kind.drawn}")
+
+
+def run_command(description, kind, epilog="Lengths are in d, times in tau."):
+    """What a command does that knows one kind of scene."""
+    compare(parse_arguments(description, epilog, kind.drawn, f"{kind.end:g}"), kind)
