@@ -3,6 +3,8 @@
 
 from dataclasses import MISSING, dataclass, fields
 
+import numpy as np
+
 from ..base.errors import SceneError
 from .json_object import read_object
 from .origin import Origin, check_numbers
@@ -37,9 +39,9 @@ class AxialScene(Origin):
             raise SceneError("scene: 'orifice_radius' must be below 'cylinder_radius'")
 
     def radius_at(self, height):
-        """Radius of the inside at a height, both in d; that of the outlet below it."""
+        """Radius of the inside at heights, an array of any shape, both in d; that of the outlet below it."""
         rim, side, shoulder = (length / self.diameter for length in (self.orifice_radius, self.cylinder_radius, self.cone_height))
-        return min(side, rim + (side - rim) * max(height, 0.0) / shoulder)
+        return np.minimum(side, rim + (side - rim) * np.maximum(height, 0.0) / shoulder)
 
 
 NUMBERS = tuple(f.name for f in fields(AxialScene) if f.type is float and f.default is MISSING)

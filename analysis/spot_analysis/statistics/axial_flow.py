@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How grains flow in a hopper that is round about its axis: outflow, profiles of their fall, packing fraction, residence.
+"""How grains flow in a hopper that is round about its axis: outflow, profiles of their fall, what stands still, packing fraction,
+residence and mixing.
 
 Lengths are in grain diameters d, times in tau = sqrt(d/g). Standard errors are over pairs of successive snapshots.
 """
 
 import numpy as np
 
+from .axial_mixing import mixing
+from .axial_packing import CORE_LAYER, core_radius, fractions_of_layers
 from .passages import falls, outflow, residence_times, snapshots_of
+from .standing import stagnant_layer, still_share
 
 HEIGHTS = (5.0, 10.0, 15.0, 20.0)  # d, of the profiles
 HALF_SLAB = 1.0  # d
 RING = 2.0  # d, width of the rings of a profile
 LEVELS = (5.0, 10.0)  # d, from which residence is counted
-CORE = 8.0  # d, radius within which the packing fraction is counted
+SHARES = {"p16": 0.16, "median": 0.5, "p84": 0.84}  # of the grains that leave, which stay less long
 
 
 def mean_of(values):
@@ -43,12 +47,20 @@ def measure(frames, scene, start, end):
     found["packing_fraction"] = mean_of([_packing_fraction(s, scene) for s in inside])
     for level in LEVELS:
         found[f"residence_median_{level:g}d"] = mean_of(residence_medians(snapshots, level, start, end))
+    found.update(_longer_and_shorter(snapshots, start, end))
+    names = [*(f"volume_fraction_{height:g}d" for height in HEIGHTS), "volume_fraction_core"]
+    found.update(zip(names, map(mean_of, np.transpose([fractions_of_layers(s, scene, HEIGHTS) for s in inside]))))
+    for height in HEIGHTS:
+        found[f"stagnant_layer_{height:g}d"] = stagnant_layer(pairs, height, float(scene.radius_at(height)))
+    found["still_share"] = [still_share(inside[0], inside[-1]), float("nan")]
+    opened = next(s for s in snapshots if s.time >= -1e-9)
+    found.update({name: [index, float("nan")] for name, index in mixing(opened, inside[-1]).items()})
     return found
 
 
 def _profile(pairs, height, radius):
     """Rate of fall in rings around the axis, at a height, and that at the wall over that on the axis (mass flow index)."""
-    rings = int(radius / RING + 1e-6)
+    rings = max(int(radius / RING + 1e-6), 1)
     edges = np.append(RING * np.arange(rings), radius)  # the last is wider, up to the wall
     speeds = np.array([speeds_at(before, after, height, edges, np.hypot) for before, after in pairs])
     name = f"speed_{height:g}d"
@@ -68,14 +80,28 @@ def speeds_at(before, after, height, edges, place):
 
 
 def _packing_fraction(snapshot, scene):
-    """Of the core of the cylinder, from its lower end to 6 d above: grain volume by centres."""
-    low = scene.cone_height / scene.diameter
+    """Of the core of the cylinder, from its lower end upwards: grain volume by centres, as in references measured before."""
+    low, core = scene.cone_height / scene.diameter, core_radius(scene)
     x, y, z = snapshot.positions.T
-    count = np.count_nonzero((np.hypot(x, y) < CORE) & (z > low) & (z < low + 6.0))
-    return count * np.pi / 6 / (np.pi * CORE ** 2 * 6.0)
+    count = np.count_nonzero((np.hypot(x, y) < core) & (z > low) & (z < low + CORE_LAYER))
+    return count * np.pi / 6 / (np.pi * core ** 2 * CORE_LAYER)
 
 
-def residence_medians(snapshots, level, start, end):
-    """Medians, for each pair of snapshots in the interval, of the times that grains which leave then have taken from a level."""
-    return [np.median(stayed) for before, after, _, stayed in residence_times(snapshots, level)
+def residence_medians(snapshots, level, start, end, share=0.5):
+    """Medians, or another quantile, for each pair of snapshots in the interval, of the times that grains which leave then have taken
+    from a level."""
+    return [np.quantile(stayed, share) for before, after, _, stayed in residence_times(snapshots, level)
             if len(stayed) and start <= before.time and after.time <= end]
+
+
+def _longer_and_shorter(snapshots, start, end):
+    """Quantiles of the residence but for the median. Nobody can have stayed for longer than the run was when the interval began, so
+    that longer ones are not known."""
+    found = {}
+    for level in LEVELS:
+        for name, share in SHARES.items():
+            if name != "median":
+                value = mean_of(residence_medians(snapshots, level, start, end, share))
+                known = value[0] <= start - max(snapshots[0].time, 0.0)
+                found[f"residence_{name}_{level:g}d"] = value if known else [float("nan"), float("nan")]
+    return found

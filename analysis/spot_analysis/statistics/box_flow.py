@@ -9,6 +9,7 @@ import numpy as np
 
 from .axial_flow import mean_of, residence_medians, speeds_at
 from .passages import drained, falls, outflow, snapshots_of
+from .standing import STILL, still_share
 
 HEIGHTS = (5.0, 10.0, 15.0)  # d, of the profiles
 LEVELS = (5.0, 10.0)  # d, from which residence is counted
@@ -16,7 +17,6 @@ STRIP = 2.0  # d, width of the strips of a profile
 BULK = (5.0, 15.0)  # d, heights between which the packing fraction is counted
 CORE = 6.0  # d from the middle of an outlet, where it is
 RIDGE = 2.0  # d to both sides of the middle between two outlets, where the ridge is looked for
-STILL = 0.5  # d; what has come down less in the interval stands still
 
 
 def measure(frames, scene, start, end):
@@ -43,7 +43,7 @@ def measure(frames, scene, start, end):
     found["packing_fraction"] = mean_of([_packing_fraction(s, outlets, depth) for s in inside])
     for level in LEVELS:
         found[f"residence_median_{level:g}d"] = mean_of(residence_medians(snapshots, level, start, end))
-    found["still_share"] = [_still_share(inside[0], inside[-1]), float("nan")]
+    found["still_share"] = [still_share(inside[0], inside[-1]), float("nan")]
     for low, high in zip(outlets, outlets[1:]):
         found[f"ridge_at_x{(low + high) / 2:g}d"] = [_ridge(inside[0], inside[-1], (low + high) / 2), float("nan")]
     return found
@@ -72,12 +72,6 @@ def _packing_fraction(snapshot, outlets, depth):
     over = (np.abs(x[:, None] - np.array(outlets)) < CORE).sum(axis=1)
     count = over[(z > BULK[0]) & (z < BULK[1])].sum()
     return count * np.pi / 6 / (len(outlets) * 2 * CORE * depth * (BULK[1] - BULK[0]))
-
-
-def _still_share(first, last):
-    """Of the grains above the base at the first snapshot, the share of those that stand still up to the last."""
-    middle, fall = falls(first, last)
-    return float(np.count_nonzero((np.abs(fall) < STILL) & (middle[:, 2] > 0)) / np.count_nonzero(first.positions[:, 2] > 0))
 
 
 def _ridge(first, last, x):
