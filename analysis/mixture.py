@@ -4,7 +4,7 @@
 
 from spot_analysis.base.interpreter import require_packages
 
-require_packages("numpy", "matplotlib", "zstandard")
+require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 from spot_analysis.commands.mixture import main  # noqa: E402  (only after the check above)
 

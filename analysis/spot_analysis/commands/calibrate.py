@@ -53,7 +53,7 @@ def calibrate():
     run = command_line.open_run(options.dumps, options, "", "calibrate", CONCEPTS)
     if run.scene.periodic_y:
         raise AnalysisError(f"{options.dumps}: the silo is periodic along y, but parameters are measured between walls there, which "
-                            "cut spots off")
+                            "cut spots off; compare.py and box.py take it")
     measured = measure(run, options.start, options.end, options.buffer)
     warn_of_widening(measured.view, command_line.print_warning)
     response = stored_response(options.response)

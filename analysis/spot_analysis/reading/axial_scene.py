@@ -8,7 +8,7 @@ import numpy as np
 from ..base.errors import SceneError
 from .json_object import read_object
 from .origin import Origin, check_numbers
-from .scene import path_beside
+from .scene import BOX_KEYS, path_beside, require_existence
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,13 @@ KEYS = (*(f.name for f in fields(AxialScene)), "cone_angle")  # which follows fr
 def load_axial_scene(source):
     """The scene of the dumps ``source`` (a folder, file or wildcard); raises SceneError naming the file, and what is missing, unknown
     or bad."""
+    require_existence(source)
     path = path_beside(source)
     values = read_object(path, f"the keys {', '.join(NUMBERS)}")
     missing = [name for name in NUMBERS if name not in values]
+    if missing and any(key in values for key in BOX_KEYS):
+        raise SceneError(f"{path}: no hopper, '{missing[0]}' is missing; the scene is a box, which analysis/box.py measures, "
+                         "mixture.py with two sizes")
     if missing:
         raise SceneError(f"{path}: no hopper, '{missing[0]}' is missing")
     unknown = [key for key in values if key not in KEYS]

@@ -12,6 +12,8 @@ from .origin import Origin, check_numbers
 
 FILE_NAME = "scene.json"
 PERIOD_KEY = "half_period_y"
+BOX_KEYS = ("half_width_x", "half_depth_y", PERIOD_KEY)  # one of these tells a box,
+HOPPER_KEYS = ("cylinder_radius", "cone_height")  # and of these a hopper, see ``axial_scene``
 LEAST_PERIOD = 12.0  # d; twice as far as pairs of grains are looked for
 
 
@@ -82,12 +84,17 @@ def load_scene(source, scene_file=None, overrides=None):
 
     Raises SceneError if there is no such source, or naming the key that is missing, unknown or bad.
     """
-    if not glob.has_magic(source) and not os.path.exists(source):
-        raise SceneError(f"{source}: no such file or folder")
+    require_existence(source)
     path = scene_file or path_beside(source)
     values = read_values(path) if scene_file or os.path.exists(path) else {}
     values.update({key: value for key, value in (overrides or {}).items() if value is not None})
     return complete_scene(values, source, path)
+
+
+def require_existence(source):
+    """Raises SceneError where there are no such dumps: a scene file of the folder around them is none of theirs."""
+    if not glob.has_magic(source) and not os.path.exists(source):
+        raise SceneError(f"{source}: no such file or folder")
 
 
 def path_beside(source):
@@ -102,6 +109,8 @@ def read_values(path):
 
 def complete_scene(values, source, path):
     """The Scene of what ``path`` and the command line gave; raises SceneError for a key that is missing or bad."""
+    if any(key in values for key in HOPPER_KEYS):
+        raise SceneError(f"{path}: the scene is a hopper ({', '.join(HOPPER_KEYS)}), which analysis/hopper.py measures")
     for key in NUMBERS:
         if key not in values and not (key == "half_depth_y" and PERIOD_KEY in values):
             where = f"in {path}" if os.path.exists(path) else f"(no {path})"

@@ -3,10 +3,9 @@
 
 import os
 
-from .scene import KEYS, PERIOD_KEY, complete_scene, path_beside, read_values
+from .scene import BOX_KEYS, KEYS, complete_scene, path_beside, read_values
 
-WIDTHS = ("half_width_x", "half_depth_y")
-WALLS = (*WIDTHS, "orifice_radius")
+WALLS = ("half_width_x", "half_depth_y", "orifice_radius")
 
 
 def scene_beside(source):
@@ -18,7 +17,7 @@ def scene_beside(source):
     if not os.path.exists(path):
         return None, False
     values = read_values(path)
-    is_box = any(key in values for key in (*WIDTHS, PERIOD_KEY))
+    is_box = any(key in values for key in BOX_KEYS)
     if not is_box:
         values = {key: value for key, value in values.items() if key in KEYS and key not in WALLS}
         values.update(dict.fromkeys(WALLS, 1.0))  # a Scene wants them; the caller knows that there are none

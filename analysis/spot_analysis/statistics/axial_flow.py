@@ -9,7 +9,7 @@ import numpy as np
 
 from .axial_mixing import mixing
 from .axial_packing import CORE_LAYER, core_radius, fractions_of_layers
-from .passages import falls, outflow, residence_times, snapshots_of
+from .passages import falls, outflow, residence_times, snapshots_of, within
 from .standing import stagnant_layer, still_share
 
 HEIGHTS = (5.0, 10.0, 15.0, 20.0)  # d, of the profiles
@@ -37,9 +37,7 @@ def measure(frames, scene, start, end):
     Raises ValueError if fewer than three snapshots lie in the interval, or if they do not tell what leaves.
     """
     snapshots = snapshots_of(frames, scene)
-    inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
-    if len(inside) < 3:
-        raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
+    inside = within(snapshots, start, end)
     pairs = list(zip(inside, inside[1:]))
     found = {"outflow": mean_of(outflow(pairs))}
     for height in HEIGHTS:

@@ -8,7 +8,7 @@ Lengths are in grain diameters d, times in tau = sqrt(d/g). Standard errors are 
 import numpy as np
 
 from .axial_flow import mean_of, residence_medians, speeds_at
-from .passages import drained, falls, outflow, snapshots_of
+from .passages import drained, falls, outflow, snapshots_of, within
 from .standing import STILL, still_share
 
 HEIGHTS = (5.0, 10.0, 15.0)  # d, of the profiles
@@ -29,9 +29,7 @@ def measure(frames, scene, start, end):
     if they do not tell what leaves.
     """
     snapshots = snapshots_of(frames, scene)
-    inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
-    if len(inside) < 3:
-        raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
+    inside = within(snapshots, start, end)
     pairs = list(zip(inside, inside[1:]))
     found = {"outflow": mean_of(outflow(pairs))}
     outlets = scene.container().middles

@@ -12,9 +12,10 @@ from ..reading.dump import find_dumps, read_frames
 from . import flow, neighbours, radial_distribution, structure
 from .front_layer import FrontLayer
 from .history import History
+from .passages import ROUNDS
 from .region import structure_region
 from .run_statistics import CONCEPTS, RunStatistics
-from .scene_fit import require_diameter, require_one_round_orifice, warn_of_misfit
+from .scene_fit import once_through, require_diameter, require_one_round_orifice, warn_of_misfit
 from .snapshot import LAG_TAU, TIME_TOLERANCE, Snapshot
 
 PROFILE_HEIGHTS = np.array([5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0, 70.0])
@@ -33,8 +34,8 @@ def measure_dumps(source, scene, label="dumps", provenance=None, warn=print, con
     require_one_round_orifice(scene)
     files, early = len(find_dumps(source)), 0
     progress = Progress(label)
-    recorder = _Recorder(scene, concepts)
-    for number, frame in enumerate(read_frames(source, extra=("radius",), warn=warn), 1):
+    recorder, frames = _Recorder(scene, concepts), read_frames(source, extra=("radius", ROUNDS), warn=warn)
+    for number, frame in enumerate(once_through(source, frames, scene), 1):
         if scene.time(frame.timestep) < -TIME_TOLERANCE:
             early += 1
             continue
@@ -52,8 +53,7 @@ def measure_dumps(source, scene, label="dumps", provenance=None, warn=print, con
     if abs(recorder.times[0]) > TIME_TOLERANCE:
         warn(f"{source}: the first snapshot is at t = {recorder.times[0]:g} tau; the density drop and the colours of "
              "the layers are relative to it, not to the start")
-    progress.finish(f"{len(recorder.times)} snapshots measured, "
-                    f"t = {recorder.times[0]:g} to {recorder.times[-1]:g} tau")
+    progress.finish(f"{len(recorder.times)} snapshots measured, t = {recorder.times[0]:g} to {recorder.times[-1]:g} tau")
     statistics = recorder.statistics(provenance or {})
     warn_of_misfit(source, statistics, recorder.lowest, warn)
     return statistics

@@ -12,7 +12,7 @@ import numpy as np
 
 from .axial_flow import mean_of
 from .lacey import lacey_index
-from .passages import Snapshot, common, drained, falls, outflow, snapshots_of
+from .passages import Snapshot, common, drained, falls, outflow, snapshots_of, within
 from .residence_by_size import LEVEL, residence
 from .surface_share import surface_share
 
@@ -44,9 +44,7 @@ def measure(frames, scene, start, end):
     snapshots lie in the interval.
     """
     snapshots = _snapshots(frames, scene)
-    inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
-    if len(inside) < 3:
-        raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed")
+    inside = within(snapshots, start, end)
     pairs = list(zip(inside, inside[1:]))
     outflow(pairs)  # refuses dumps that do not tell what leaves
     left = np.array([_left(before, after) for before, after in pairs])  # small, large
@@ -69,7 +67,7 @@ def measure(frames, scene, start, end):
 def _snapshots(frames, scene):
     frames = list(frames)
     if any("radius" not in frame.extra for frame in frames):
-        raise ValueError("the dumps have no column 'radius'")
+        raise ValueError("the dumps have no column 'radius', which tells sizes; box.py takes equal grains without")
     if not frames or len(frames[0].ids) == 0:
         raise ValueError("the first snapshot has no grains")
     split = (frames[0].extra["radius"].min() + frames[0].extra["radius"].max()) / 2

@@ -46,6 +46,15 @@ def snapshots_of(frames, scene):
     return found
 
 
+def within(snapshots, start, end):
+    """Those in the interval, tau; raises ValueError if there are fewer than three."""
+    inside = [s for s in snapshots if start - 1e-9 <= s.time <= end + 1e-9]
+    if len(inside) < 3:
+        reach = f"; the run has {snapshots[0].time:g} to {snapshots[-1].time:g} tau" if snapshots else ""
+        raise ValueError(f"{len(inside)} snapshots between {start:g} and {end:g} tau, at least 3 are needed{reach}")
+    return inside
+
+
 def _counted(frame):
     """Rounds of each grain from the column that counts them, None where there is none: other columns hold no whole numbers."""
     for values in (values for name, values in frame.extra.items() if fnmatchcase(name, ROUNDS)):

@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from ..base.errors import SceneError
+from .passages import JUMP, common, snapshots_of
 
 BASE_GAP = 1.0  # d; centres of grains at rest on a base are lower
 
@@ -17,7 +18,7 @@ def require_diameter(scene, frame):
     if radius is not None and np.any(np.abs(2 * radius / diameter - 1) > 1e-3):
         odd = np.argmax(np.abs(2 * radius / diameter - 1))
         raise SceneError(f"grain {frame.ids[odd]} has radius {radius[odd]:g}, "
-                         f"but the scene's diameter is {diameter:g}; grains of unequal size are for mixture.py")
+                         f"but the scene's diameter is {diameter:g}; grains of unequal size are for mixture.py, in boxes")
     if len(frame.ids) < 2:
         return
     extent = np.ptp(frame.positions, axis=0) + diameter
@@ -25,6 +26,23 @@ def require_diameter(scene, frame):
         raise SceneError(f"the scene's diameter {diameter:g} does not fit the dump: {len(frame.ids)} such grains "
                          f"have more volume than the box of {extent[0]:.3g} x {extent[1]:.3g} x {extent[2]:.3g} "
                          "they lie in")
+
+
+def once_through(source, frames, scene):
+    """The Frames of ``source``, as long as no grain goes round; raises SceneError where one does: rates and velocities would be
+    wrong."""
+    last = None
+    for frame in frames:
+        (latest,) = snapshots_of([frame], scene)
+        rounds, ids = latest.rounds, latest.ids
+        if last is not None and not rounds.any():
+            first, second = common(last, latest)
+            rounds, ids = latest.positions[second, 2] - last.positions[first, 2] > JUMP, latest.ids[second]
+        if rounds.any():
+            raise SceneError(f"{source}: grain {ids[np.argmax(rounds)]} has gone round by step {frame.timestep}; hopper.py and box.py in "
+                             "analysis measure grains that come in again")
+        last = latest
+        yield frame
 
 
 def warn_of_misfit(source, run, lowest, warn):
@@ -41,4 +59,4 @@ def warn_of_misfit(source, run, lowest, warn):
 def require_one_round_orifice(scene):
     """Raises SceneError for a silo that only box.py measures."""
     if scene.orifices > 1 or scene.slot:
-        raise SceneError("scene: this measures a silo with one round orifice; analysis/box.py takes several, and slots")
+        raise SceneError("scene: this measures a silo with one round orifice; analysis/box.py takes several, and slots, of equal grains")
