@@ -10,6 +10,7 @@ import pytest
 import zstandard
 
 from lammps_runs import FRONT_END, PLUGIN, ROOT, needs_mpirun, on_ranks
+from near_dem import assert_near_dem
 
 HOPPERS = ROOT / "examples" / "hoppers"
 
@@ -26,11 +27,17 @@ def run_hopper(out, launcher=(), **variables):
 @needs_mpirun
 @pytest.mark.parametrize("angle, height", [(30, 13.8564), (60, 4.6188)])
 def test_the_deck_drains_both_hoppers(tmp_path, angle, height):
-    one, _ = run_hopper(tmp_path / "one", angle=angle)
+    outflow = {30: 86.4, 60: 61.4}[angle]
+    one, _ = run_hopper(tmp_path / "one", angle=angle, outflow=outflow, time=0.174)
     scene = json.loads((tmp_path / "one" / "scene.json").read_text())
     assert scene["cone_height"] == pytest.approx(0.003 * height, rel=1e-5) and scene["grains"] == 12000
     assert int(one.split(b"\n")[3]) < 12000
-    assert run_hopper(tmp_path / "two", launcher=on_ranks(2), angle=angle, threads=2)[0] == one
+    assert run_hopper(tmp_path / "two", launcher=on_ranks(2), angle=angle, threads=2, outflow=outflow)[0] == one
+    # 10 tau. In the README: + 9 and + 10 % on the axis at 5 d, - 5 and - 1 % at 10 d, + 1 % in packing fraction; 5 % at first over the
+    # shallow cone, whose bed has not dilated yet.
+    assert_near_dem(tmp_path / "one", f"hoppers/dem-{angle}.json", (4, 10), {
+        "outflow": 0.07, "speed_5d_r1.0d": 0.25, "speed_5d_r3.0d": 0.25, "packing_fraction": 0.06,
+        **({"speed_10d_r1.0d": 0.20} if angle == 30 else {"speed_10d_r1.0d": 0.35})})
 
 
 @pytest.mark.parametrize("angle, predicted", [(30, 115.7), (60, 78.7)])
