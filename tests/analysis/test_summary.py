@@ -93,5 +93,5 @@ def test_grains_that_go_round_are_not_for_the_comparison(tmp_path, counted):
     frames = test_passages.round_frames(counted=counted, count=400, times=range(0, 9, 2))
     columns = ("radius", "f_bed[5]") if counted else ("radius",)
     run = write_frames(tmp_path / "run", frames, test_passages.BOX.as_dict(), columns)
-    assert "has gone round by step" in (said := error_of("measure.py", run, "-o", tmp_path / "x.npz")) and "box.py" in said
+    assert "grains have gone round by step" in (said := error_of("measure.py", run, "-o", tmp_path / "x.npz")) and "box.py" in said
     assert script("summary.py", run, "--from", 0, "--to", 8).returncode == 0
