@@ -13,10 +13,12 @@ from . import command_line, quantities
 def _measure(folder, start, end):
     scene = load_scene(folder)
     require_one_round_orifice(scene)
-    return mixture.measure(read_frames(folder, extra=("radius", ROUNDS), warn=command_line.print_warning), scene, start, end)
+    frames = read_frames(folder, extra=("radius", ROUNDS), warn=command_line.print_warning)
+    return mixture.measure(frames, scene, start, end)
 
 
-KIND = quantities.Kind("mixture", 30.0, _measure, plots_mixture.save, "profiles of the fall, composition of what leaves")
+KIND = quantities.Kind("mixture", 30.0, _measure, plots_mixture.save,
+                       "profiles of the fall, composition of what leaves")
 UNITS = "Lengths are in d, that of a grain of mean volume; times in tau."
 
 

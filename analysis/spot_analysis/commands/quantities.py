@@ -34,10 +34,12 @@ def parse_arguments(description, epilog, drawn, end):
     """drawn : what --plot shows; end : default of --to, in words"""
     parser = argparse.ArgumentParser(description=description, epilog=epilog)
     parser.add_argument("runs", nargs="+", metavar="RUN",
-                        help="folder of dumps with scene.json, or a file of --output; the first is what the others are compared with, "
-                             "alone it is measured")
-    parser.add_argument("--from", dest="start", type=float, metavar="TAU", help=f"default: that of a file of --output, or {START:g}")
-    parser.add_argument("--to", dest="end", type=float, metavar="TAU", help=f"default: that of a file of --output, or {end}")
+                        help="folder of dumps with scene.json, or a file of --output; the first is what the others are "
+                             "compared with, alone it is measured")
+    parser.add_argument("--from", dest="start", type=float, metavar="TAU",
+                        help=f"default: that of a file of --output, or {START:g}")
+    parser.add_argument("--to", dest="end", type=float, metavar="TAU",
+                        help=f"default: that of a file of --output, or {end}")
     parser.add_argument("--plot", metavar="FILE.png", help=f"draws {drawn}")
     parser.add_argument("-o", "--output", metavar="FILE.json", help="keeps the statistics of the first run")
     options = parser.parse_args()
@@ -54,7 +56,8 @@ def choose_interval(options, default_end):
     options.start = stored[0] if options.start is None else options.start
     options.end = stored[1] if options.end is None else options.end
     if not 0 <= options.start < options.end:
-        raise AnalysisError(f"the interval {options.start:g} to {options.end:g} tau: --from must not be negative, and below --to")
+        raise AnalysisError(f"the interval {options.start:g} to {options.end:g} tau: "
+                            "--from must not be negative, and below --to")
 
 
 def is_stored(source):
@@ -67,7 +70,8 @@ def read_stored(source):
         with open(source, encoding="utf-8") as handle:
             stored = json.load(handle)
         (start, end), quantities = stored["interval"], stored["quantities"]
-        return {"interval": [float(start), float(end)], "quantities": {name: [*map(float, quantities[name])] for name in quantities}}
+        numbers = {name: [*map(float, quantities[name])] for name in quantities}
+        return {"interval": [float(start), float(end)], "quantities": numbers}
     except (ValueError, KeyError, TypeError) as error:
         raise AnalysisError(f"{source}: no statistics of --output ({error})") from error
 
@@ -83,7 +87,8 @@ def statistics(source, options, measure):
     stored = read_stored(source)
     start, end = stored["interval"]
     if [start, end] != [options.start, options.end]:
-        raise AnalysisError(f"{source}: holds the interval {start:g} to {end:g} tau, not {options.start:g} to {options.end:g}")
+        raise AnalysisError(f"{source}: holds the interval {start:g} to {end:g} tau, "
+                            f"not {options.start:g} to {options.end:g}")
     return stored["quantities"]
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Measure what a scene has, or compare it, whatever the scene: hopper.py, box.py or mixture.py, as scene.json and the sizes of the
+"""Measure what a scene has, or compare it, whatever the scene: hopper.py, box.py or mixture.py, as scene.json and the
+sizes of the
 grains tell."""
 
 import numpy as np
@@ -40,7 +41,8 @@ def _kind_of_names(names):
 
 
 def common_kind(runs):
-    """The Kind by which all can be measured; raises SceneError where there is none. A mixture may have grains of one size, so stored
+    """The Kind by which all can be measured; raises SceneError where there is none. A mixture may have grains of one
+    size, so stored
     statistics decide between box and mixture, or else any run with two sizes."""
     kinds = [kind_of(run) for run in runs]
     other = next((k for k, kind in enumerate(kinds) if (kind is hopper.KIND) != (kinds[0] is hopper.KIND)), None)
@@ -52,7 +54,8 @@ def common_kind(runs):
 
 def summarize():
     default = "by the scene: " + ", ".join(f"{kind.end:g} of a {kind.what}" for kind in KINDS)
-    options = quantities.parse_arguments(__doc__, "Lengths are in d, times in tau.", "what the script for the scene draws", default)
+    options = quantities.parse_arguments(__doc__, "Lengths are in d, times in tau.",
+                                         "what the script for the scene draws", default)
     quantities.compare(options, common_kind(options.runs))
 
 

@@ -46,19 +46,21 @@ class AxialScene(Origin):
 
 NUMBERS = tuple(f.name for f in fields(AxialScene) if f.type is float and f.default is MISSING)
 ORIGIN = tuple(f.name for f in fields(AxialScene) if f.type is float and f.default is not MISSING)  # of time and space
-KEYS = (*(f.name for f in fields(AxialScene)), "cone_angle")  # which follows from the others; decks of LIGGGHTS write it
+# The last follows from the others; decks of LIGGGHTS write it.
+KEYS = (*(f.name for f in fields(AxialScene)), "cone_angle")
 
 
 def load_axial_scene(source):
-    """The scene of the dumps ``source`` (a folder, file or wildcard); raises SceneError naming the file, and what is missing, unknown
+    """The scene of the dumps ``source`` (a folder, file or wildcard); raises SceneError naming the file, and what is
+    missing, unknown
     or bad."""
     require_existence(source)
     path = path_beside(source)
     values = read_object(path, f"the keys {', '.join(NUMBERS)}")
     missing = [name for name in NUMBERS if name not in values]
     if missing and any(key in values for key in BOX_KEYS):
-        raise SceneError(f"{path}: no hopper, '{missing[0]}' is missing; the scene is a box, which analysis/box.py measures, "
-                         "mixture.py with two sizes")
+        raise SceneError(f"{path}: no hopper, '{missing[0]}' is missing; the scene is a box, which "
+                         "analysis/box.py measures, mixture.py with two sizes")
     if missing:
         raise SceneError(f"{path}: no hopper, '{missing[0]}' is missing")
     unknown = [key for key in values if key not in KEYS]

@@ -9,7 +9,8 @@ from ..base.errors import SceneError
 
 
 class Origin:
-    """Of a scene with diameter, gravity and timestep, opening_time, axis_x, axis_y and base_z, in the units of the dump."""
+    """Of a scene with diameter, gravity and timestep, opening_time, axis_x, axis_y and base_z, in the units of the
+    dump."""
 
     @property
     def tau(self):

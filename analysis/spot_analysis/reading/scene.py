@@ -93,7 +93,7 @@ def load_scene(source, scene_file=None, overrides=None):
 
 def require_existence(source):
     """Raises SceneError where there are no such dumps: a scene file of the folder around them is none of theirs."""
-    if not glob.has_magic(source) and not os.path.exists(source):
+    if not glob.has_magic(os.fspath(source)) and not os.path.exists(source):
         raise SceneError(f"{source}: no such file or folder")
 
 

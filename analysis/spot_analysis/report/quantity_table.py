@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Quantities, name -> [value, standard error], of one run as a table, or of a reference and several runs side by side."""
+"""Quantities, name -> [value, standard error], of one run as a table, or of a reference and several runs side by
+side."""
 
 import math
 
@@ -20,7 +21,8 @@ def pooled(runs):
 def lines(interval, source, reference, spot, runs):
     """Of a table with a row for each quantity of either; what one of them lacks is unknown.
 
-    interval : in words; source : name of the reference; spot : None where there is the reference alone; runs : how many it pools
+    interval : in words; source : name of the reference; spot : None where there is the reference alone; runs : how many
+    it pools
     """
     heading = [interval, source, *([f"{runs} of spot", "difference"] if spot is not None else [])]
     yield "| " + " | ".join(heading) + " |"

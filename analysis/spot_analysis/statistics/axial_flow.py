@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How grains flow in a hopper that is round about its axis: outflow, profiles of their fall, what stands still, packing fraction,
+"""How grains flow in a hopper that is round about its axis: outflow, profiles of their fall, what stands still, packing
+fraction,
 residence and mixing.
 
 Lengths are in grain diameters d, times in tau = sqrt(d/g). Standard errors are over pairs of successive snapshots.
@@ -78,7 +79,8 @@ def speeds_at(before, after, height, edges, place):
 
 
 def _packing_fraction(snapshot, scene):
-    """Of the core of the cylinder, from its lower end upwards: grain volume by centres, as in references measured before."""
+    """Of the core of the cylinder, from its lower end upwards: grain volume by centres, as in references measured
+    before."""
     low, core = scene.cone_height / scene.diameter, core_radius(scene)
     x, y, z = snapshot.positions.T
     count = np.count_nonzero((np.hypot(x, y) < core) & (z > low) & (z < low + CORE_LAYER))
@@ -86,14 +88,16 @@ def _packing_fraction(snapshot, scene):
 
 
 def residence_medians(snapshots, level, start, end, share=0.5):
-    """Medians, or another quantile, for each pair of snapshots in the interval, of the times that grains which leave then have taken
+    """Medians, or another quantile, for each pair of snapshots in the interval, of the times that grains which leave
+    then have taken
     from a level."""
     return [np.quantile(stayed, share) for before, after, _, stayed in residence_times(snapshots, level)
             if len(stayed) and start <= before.time and after.time <= end]
 
 
 def _longer_and_shorter(snapshots, start, end):
-    """Quantiles of the residence but for the median. Nobody can have stayed for longer than the run was when the interval began, so
+    """Quantiles of the residence but for the median. Nobody can have stayed for longer than the run was when the
+    interval began, so
     that longer ones are not known."""
     found = {}
     for level in LEVELS:

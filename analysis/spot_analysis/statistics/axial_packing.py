@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Packing fraction of a round hopper: volume of grains, cut off where a layer ends, over that of the room inside its walls.
+"""Packing fraction of a round hopper: volume of grains, cut off where a layer ends, over that of the room inside its
+walls.
 
-Lengths are in d. Layers that the free surface comes down into are left out: what is above it would count as a loose packing.
+Lengths are in d. Layers that the free surface comes down into are left out: what is above it would count as a loose
+packing.
 """
 
 import numpy as np
@@ -20,7 +22,8 @@ def core_radius(scene):
 
 
 def fractions_of_layers(snapshot, scene, heights):
-    """Packing fraction around each height from wall to wall, then of the core above the cone; not a number above the surface.
+    """Packing fraction around each height from wall to wall, then of the core above the cone; not a number above the
+    surface.
 
     snapshot : of ``passages``; scene : AxialScene
     """

@@ -25,7 +25,8 @@ def measure(frames, scene, start, end):
     frames : Frames of a drainage in the order of time; scene : Scene of the box
     start, end : the interval, tau
 
-    With one outlet profiles are along |x|, otherwise along x. Raises ValueError if fewer than three snapshots lie in the interval, or
+    With one outlet profiles are along |x|, otherwise along x. Raises ValueError if fewer than three snapshots lie in
+    the interval, or
     if they do not tell what leaves.
     """
     snapshots = snapshots_of(frames, scene)

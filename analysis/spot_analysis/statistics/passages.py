@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Snapshots of a drainage, and which grains have gone through the outlet between two of them, those that go round included.
+"""Snapshots of a drainage, and which grains have gone through the outlet between two of them, those that go round
+included.
 
-Grains that go round (fix spot, recirculate) leave at the outlet and come in again on top. How often each has done so is read off a
-column of the dumps, f_ID[5] of fix spot with peratom. Without it a grain has gone round that has risen by more than ``JUMP``.
+Grains that go round (fix spot, recirculate) leave at the outlet and come in again on top. How often each has done so is
+read off a
+column of the dumps, f_ID[5] of fix spot with peratom. Without it a grain has gone round that has risen by more than
+``JUMP``.
 Lengths are in d, times in tau.
 """
 
@@ -39,7 +42,8 @@ def snapshots_of(frames, scene):
     """
     found = []
     for frame in frames:
-        bare = Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions), np.zeros(len(frame.ids), dtype=int))
+        positions, none = scene.positions(frame.positions), np.zeros(len(frame.ids), dtype=int)
+        bare = Snapshot(scene.time(frame.timestep), frame.ids, positions, none)
         counted = _counted(frame)
         rounds = counted if counted is not None else _jumped(found[-1], bare) if found else bare.rounds
         found.append(Snapshot(bare.time, bare.ids, bare.positions, rounds))
@@ -56,7 +60,8 @@ def within(snapshots, start, end):
 
 
 def _counted(frame):
-    """Rounds of each grain from the column that counts them, None where there is none: other columns hold no whole numbers."""
+    """Rounds of each grain from the column that counts them, None where there is none: other columns hold no whole
+    numbers."""
     for values in (values for name, values in frame.extra.items() if fnmatchcase(name, ROUNDS)):
         if np.all((values >= 0) & (values == np.rint(values))):
             return values.astype(int)
@@ -69,8 +74,9 @@ def _jumped(before, after):
     first, second = common(before, after)
     up = after.positions[second, 2] - before.positions[first, 2] > JUMP
     if np.count_nonzero(up) > MOST * len(after.ids):
-        raise ValueError(f"{np.count_nonzero(up)} of {len(after.ids)} grains go round between {before.time:g} and {after.time:g} tau, too "
-                         "many to tell how often each: dump more often, or the column f_ID[5] of fix spot with 'peratom yes'")
+        raise ValueError(f"{np.count_nonzero(up)} of {len(after.ids)} grains go round between {before.time:g} and "
+                         f"{after.time:g} tau, too many to tell how often each: dump more often, or "
+                         "the column f_ID[5] of fix spot with 'peratom yes'")
     rounds[second] = before.rounds[first] + up
     return rounds
 
@@ -91,20 +97,23 @@ def drained(before, after):
 def outflow(pairs):
     """Grains a tau that leave, for each pair of successive snapshots.
 
-    Raises ValueError where none leaves, and grains fall but the bed does not: then they come in again where nobody sees it.
+    Raises ValueError where none leaves, and grains fall but the bed does not: then they come in again where nobody sees
+    it.
     """
     rates = [drained(*pair).sum() / (pair[1].time - pair[0].time) for pair in pairs]
     full = [pair for pair in pairs if len(pair[0].ids) and len(pair[1].ids)]
     fallen = sum(np.clip(falls(*pair)[1], 0, None).sum() / len(pair[0].ids) for pair in full)
     sunk = sum(pair[0].positions[:, 2].mean() - pair[1].positions[:, 2].mean() for pair in full)
     if not np.any(rates) and fallen > FALLING and sunk < fallen / 2:
-        raise ValueError(f"no grain leaves, but grains come down by {fallen:.2g} d on average and the bed by {sunk:.2g} d: the dumps do "
-                         "not tell which go round; dump the column f_ID[5] of fix spot with 'peratom yes'")
+        raise ValueError(f"no grain leaves, but grains come down by {fallen:.2g} d on average and the bed by "
+                         f"{sunk:.2g} d: the dumps do not tell which go round; "
+                         "dump the column f_ID[5] of fix spot with 'peratom yes'")
     return rates
 
 
 def falls(before, after):
-    """Of grains that are in both snapshots and did not go round between: where they were between, and how far they have come down."""
+    """Of grains that are in both snapshots and did not go round between: where they were between, and how far they have
+    come down."""
     first, second = common(before, after)
     stays = before.rounds[first] == after.rounds[second]
     first, second = first[stays], second[stays]
@@ -113,14 +122,16 @@ def falls(before, after):
 
 
 def residence_times(snapshots, level):
-    """For each pair of successive snapshots: before, after, indices in the first of grains that leave then, (k,), and for how long,
+    """For each pair of successive snapshots: before, after, indices in the first of grains that leave then, (k,), and
+    for how long,
     tau, they have been below a level. Grains that started below it are left out until they have gone round."""
     ids = np.unique(np.concatenate([s.ids for s in snapshots]))
     passed = np.full(len(ids), np.nan)
     for before, after in zip(snapshots, snapshots[1:]):
         first, second = common(before, after)
         stays = before.rounds[first] == after.rounds[second]
-        grain, height, later = np.searchsorted(ids, before.ids), before.positions[:, 2], np.full(len(before.ids), -np.inf)
+        grain, height = np.searchsorted(ids, before.ids), before.positions[:, 2]
+        later = np.full(len(before.ids), -np.inf)
         later[first[stays]] = after.positions[second[stays], 2]
         passes = (height >= level) & (later < level) & np.isnan(passed[grain])
         share = (height[passes] - level) / (height[passes] - np.maximum(later[passes], 0.0))

@@ -19,7 +19,8 @@ def require_diameter(scene, frame):
     if radius is not None and np.any(np.abs(2 * radius / diameter - 1) > 1e-3):
         odd = np.argmax(np.abs(2 * radius / diameter - 1))
         raise SceneError(f"grain {frame.ids[odd]} has radius {radius[odd]:g}, "
-                         f"but the scene's diameter is {diameter:g}; grains of unequal size are for mixture.py, in boxes")
+                         f"but the scene's diameter is {diameter:g}; "
+                         "grains of unequal size are for mixture.py, in boxes")
     if len(frame.ids) < 2:
         return
     extent = np.ptp(frame.positions, axis=0) + diameter
@@ -30,7 +31,8 @@ def require_diameter(scene, frame):
 
 
 def once_through(source, frames, scene):
-    """The Frames of ``source``, as long as no grains go round; raises SceneError where they do: rates and velocities would be wrong.
+    """The Frames of ``source``, as long as no grains go round; raises SceneError where they do: rates and velocities
+    would be wrong.
 
     They are counted by the dumps, or more than ``STRAY`` have risen as grains never do by themselves."""
     last, risen = None, 0
@@ -40,7 +42,8 @@ def once_through(source, frames, scene):
             first, second = common(last, latest)
             risen += np.count_nonzero(latest.positions[second, 2] - last.positions[first, 2] > JUMP)
         if latest.rounds.any() or risen > STRAY:
-            raise SceneError(f"{source}: {max(np.count_nonzero(latest.rounds), risen)} grains have gone round by step {frame.timestep}; "
+            most = max(np.count_nonzero(latest.rounds), risen)
+            raise SceneError(f"{source}: {most} grains have gone round by step {frame.timestep}; "
                              "hopper.py and box.py in analysis measure grains that come in again")
         last = latest
         yield frame
@@ -60,4 +63,5 @@ def warn_of_misfit(source, run, lowest, warn):
 def require_one_round_orifice(scene):
     """Raises SceneError for a silo that only box.py measures."""
     if scene.orifices > 1 or scene.slot:
-        raise SceneError("scene: this measures a silo with one round orifice; analysis/box.py takes several, and slots, of equal grains")
+        raise SceneError("scene: this measures a silo with one round orifice; analysis/box.py takes several, "
+                         "and slots, of equal grains")

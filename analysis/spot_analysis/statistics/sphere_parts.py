@@ -12,7 +12,8 @@ def volume_inside(positions, low, high, radius_at):
 
     positions : (n, 3); radius_at : function of heights, an array of any shape
 
-    Horizontal cuts of a grain are circles, and what is inside of them is a lens. It is integrated over the height by Gauss'
+    Horizontal cuts of a grain are circles, and what is inside of them is a lens. It is integrated over the height by
+    Gauss'
     rule, exactly where the grain is cut by no side.
     """
     axis, z = np.hypot(positions[:, 0], positions[:, 1]), positions[:, 2]
@@ -24,7 +25,8 @@ def volume_inside(positions, low, high, radius_at):
 
 
 def lens_area(one, other, apart):
-    """Area that two circles have in common, with their radii and how far their middles are apart; arrays of one shape."""
+    """Area that two circles have in common, with their radii and how far their middles are apart; arrays of one
+    shape."""
     one, other, apart = np.broadcast_arrays(one, other, apart)
     smaller = np.minimum(one, other)
     area = np.where(apart <= np.abs(one - other), np.pi * smaller ** 2, 0.0)
