@@ -14,6 +14,7 @@ from synthetic import frame_text, write_text
 from spot_analysis.base.errors import AnalysisError
 from spot_analysis.commands import import_packing
 from spot_analysis.importing import fitting, overlaps, walls
+from spot_analysis.importing.snapping import snapped
 from spot_analysis.importing.turning import direction, turned
 from spot_analysis.reading.packing_file import read_packing
 
@@ -159,6 +160,31 @@ def test_walls_are_found_where_they_were(hopper):
     assert np.degrees(np.arctan2(radius - low, shoulder - base)) == pytest.approx(np.degrees(np.arctan2(6, 15)), abs=0.1)
     silo = read_packing(str(EXAMPLES / "silo" / "out-of-sample" / "packing.data.gz")).positions
     assert np.allclose(fitting.fit("box", silo, D, 0.0)[0].numbers, np.array([-16, 16, -4, 4]) * D, atol=0.02 * D)
+
+
+FITTED = "--fit cone-and-cylinder --outflow 5700".split()
+
+
+@pytest.mark.parametrize("orifice, shift", [(["0.012"], (0, 0, 0)), ("0.1 -0.2 0.3 0.012".split(), (0.1, -0.2, 0.3))])
+def test_a_fitted_hopper_is_where_its_outlet_is(tmp_path, orifice, shift):
+    """Axis, floor and rim are exactly the outlet's: else scene.json has no walls, and hopper.py refuses it."""
+    deck = imported(tmp_path, HOPPER, *FITTED, "--orifice", *orifice, "--shift", *shift)[-1]
+    place = " ".join(f"{value:g}" for value in shift)
+    words = deck.partition("fix       drain")[2].split("&")
+    cone, cylinder = (np.array(part.split()[3:9], dtype=float) for part in words[0].split("walls")[1:])
+    assert np.array_equal(cone[[0, 1, 2, 4]], [*shift[:2], 0.012, shift[2]]) and np.array_equal(cylinder[:2], shift[:2])
+    assert np.allclose([cone[3], cone[5] - shift[2]], [0.03, 0.045], rtol=0, atol=0.03 * D) and cylinder[2] == cone[3]
+    assert f"orifice {place} 0.012 " in words[1]
+
+
+def test_what_is_farther_off_than_a_fit_stays_there():
+    for place in (0.01, 0.03):
+        cone = snapped(walls.cone_and_cylinder(place, -place, 4 + place, 10, 0, 8), (0, 0, 0, 4), 1.0).numbers
+        cylinder = snapped(walls.cylinder(place, -place, 6), (0, 0, 0, 4), 1.0).numbers
+        box = snapped(walls.box(place - 6, place + 6, -3 - place, 3 - place), (0, 0, 0, 4), 1.0).numbers
+        left = 0 if place < 0.02 else place
+        assert np.allclose(cone, [left, -left, 4 + left, 10, 0, 8]) and np.allclose(cylinder, [left, -left, 6])
+        assert np.allclose(box, [left - 6, left + 6, -3 - left, 3 - left])
 
 
 def rings(radius, layers):

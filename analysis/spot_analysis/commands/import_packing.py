@@ -11,6 +11,7 @@ from ..importing import walls as shapes
 from ..importing import writing
 from ..importing.fitting import fit
 from ..importing.overlaps import relax
+from ..importing.snapping import middle_of, near, snapped
 from ..importing.turning import direction, turned
 from ..reading.packing_file import read_packing
 from . import command_line
@@ -72,7 +73,6 @@ def walls_of(options, positions, diameters):
             raise AnalysisError("--fit finds walls by the layer of equal grains at them; of other sizes name the walls by --box, --cylinder, "
                                 "--cone or --walls")
         found, coverage = fit(options.fit, positions, diameter, height)
-        print("fit: " + "; ".join(f"{part}, {share:.2f} grains at it for each d^2" for part, (_, share) in zip(found.parts, coverage)))
     elif options.box:
         found = shapes.box(*options.box)
     elif options.cylinder:
@@ -80,9 +80,13 @@ def walls_of(options, positions, diameters):
     else:
         x, y, low, radius, high = options.cone
         found = shapes.cone_and_cylinder(x, y, low, radius, height, height + high)
-    middle = found.axis or ((found.numbers[0] + found.numbers[1]) / 2, (found.numbers[2] + found.numbers[3]) / 2)
+    middle = [near(value, 0.0, diameter) if options.fit else value for value in middle_of(found)]
     orifice = tuple(options.orifice) if len(options.orifice) == 4 else (*middle, 0.0, options.orifice[0])
-    return shapes.around(found, orifice, diameter), orifice
+    if options.fit:
+        found = snapped(found, orifice, diameter)
+        print("fit: " + "; ".join(f"{part}, {share:.2f} grains at it for each d^2" for part, (_, share) in zip(found.parts, coverage)))
+    found = shapes.around(found, orifice, diameter)
+    return found, orifice
 
 
 def check_places(walls, positions, diameters):
