@@ -241,7 +241,8 @@ def test_sizes(tmp_path, monkeypatch, capsys):
         assert f"variable  d equal {np.cbrt(np.mean(sizes**3)):.9g} " in deck
     assert "no grain may be more than 2 times as wide" in refusal(monkeypatch, capsys, source(0.4), *BOX, "-o", tmp_path)
     fit = "--fit box --orifice 2".split()
-    assert "name the walls by --box" in refusal(monkeypatch, capsys, source(0.02), *fit, "-o", tmp_path)
+    assert "at them: name the walls by --box" in refusal(monkeypatch, capsys, source(0.02), *fit, "-o", tmp_path)
+    assert "at them: give --equal-sizes, or name" in refusal(monkeypatch, capsys, source(0.008), *fit, "-o", tmp_path)
 
 
 def test_a_mixture_is_relaxed_as_pairs_touch(tmp_path):
@@ -327,10 +328,24 @@ def test_cut_gzip_and_no_file(tmp_path, monkeypatch, capsys):
     ("--walls sphere --orifice 1", "--orifice: give x y z R where the walls are given by --walls"),
     ("--box -1.2 3 -3 3 --orifice 1", "3 grains stick out of the walls or the base by more than 0.3 d, such as grain 1 at -1.5 -1.5 0.5 by 0.80 d"),
     ("--box -3 3 -3 3 --orifice 0.5 --shift 0 0 -0.4", "stick out of the walls or the base"),
+    ("--box -3 3 -3 3 --orifice 4", "--orifice 0 0 0 4 (x y z R): reaches 1.00 d beyond the wall at x = -3"),
+    ("--box -3 3 -3 3 --orifice 0 2.5 0 1", "--orifice 0 2.5 0 1 (x y z R): reaches 0.50 d beyond the wall at y = 3"),
+    ("--cylinder 0 0 3 --orifice 2 0 0 2", "reaches 1.00 d beyond the cylinder of radius 3, whose radius is 3 at its height"),
+    ("--cone 0 0 3 5 4 --orifice 3.5", "reaches 0.50 d beyond the cone of 26.57 degrees, whose radius is 3 at its height"),
 ])
 def test_options_that_are_refused(tmp_path, monkeypatch, capsys, words, reason):
     source = write_text(tmp_path / "bare.txt", rows_text(TEN, 0.5))
     assert reason in refusal(monkeypatch, capsys, source, *words.split(), "-o", tmp_path / "out")
+
+
+def test_an_outlet_unlike_the_mouth_is_told(tmp_path):
+    source = write_text(tmp_path / "bare.txt", rows_text(TEN, 0.5))
+    for words, said in (("--cone 0 0 3 5 4 --orifice 2", "the cone's radius is 3 at the outlet's height, 1.00 d more than the outlet's"),
+                        ("--cone 0 0 3 5 4 --orifice 0 0 -2.5 3", "the lowest grain is 2.5 d above the outlet: is that its height?"),
+                        ("--cone 0 0 3 5 4 --orifice 3", "")):
+        done = script("import_packing.py", source, *words.split(), "-o", tmp_path / "out")
+        assert done.returncode == 0 and done.stdout.endswith(f"\ntry: spot-check {tmp_path}/out/in.spot\n")
+        assert [said in line for line in done.stderr.splitlines() if "grains of 1 m" not in line] == [True] * bool(said)
 
 
 def test_the_exit_status_is_1(tmp_path):

@@ -10,41 +10,18 @@ from ..base.progress import Progress
 from ..importing import walls as shapes
 from ..importing import writing
 from ..importing.fitting import fit
+from ..importing.outlet import doubts, require_inside
 from ..importing.overlaps import relax
 from ..importing.snapping import middle_of, near, snapped
 from ..importing.turning import direction, turned
 from ..reading.packing_file import read_packing
 from . import command_line
 from .import_options import UNITS, parse_arguments
+from .import_sizes import EQUAL, NEARLY_EQUAL, diameters_of, mean_diameter
 
-EQUAL, NEARLY_EQUAL = 1e-6, 0.01  # spreads of diameters: of equal grains, and what --equal-sizes makes equal
-WIDEST = 2  # diameters of the smallest grain, that fix spot allows
 STICKS_OUT, THROUGH = 0.01, 0.3  # d beyond a wall: grains that are counted, and that are refused
 GRAINS = (1e-5, 0.1)  # m that a grain's diameter is likely to be between
 DENSITY = 2500.0  # kg/m3, glass
-
-
-def diameters_of(options, grains, scale):
-    """(n,) in the deck's unit; raises AnalysisError where they differ too much."""
-    n = len(grains.positions)
-    if options.diameter:
-        return np.full(n, options.diameter)
-    if grains.diameters is None:
-        raise AnalysisError(f"{options.packing}: no diameters or radii in it: give --diameter")
-    low, mean, high = (float(function(grains.diameters)) for function in (np.min, np.mean, np.max))
-    spread = max(high - mean, mean - low) / mean
-    if spread <= EQUAL:
-        return np.full(n, mean * scale)
-    sizes = f"diameters are {low * scale:.6g} to {high * scale:.6g}, up to {100 * spread:.2g} % off their mean"
-    if options.equal_sizes:
-        if spread > NEARLY_EQUAL:
-            raise AnalysisError(f"{options.packing}: {sizes}; --equal-sizes makes equal what is within 1 %: leave it out")
-        print(f"sizes: {sizes}; all have {mean * scale:.6g} now")
-        return np.full(n, mean * scale)
-    if high > WIDEST * low:
-        raise AnalysisError(f"{options.packing}: {sizes}; no grain may be more than {WIDEST} times as wide as another")
-    print(f"sizes: {sizes}; they stay as they are" + (", though --equal-sizes would drain faster" if spread <= NEARLY_EQUAL else ""))
-    return grains.diameters * scale
 
 
 def placed(options, grains, diameters, scale):
@@ -57,9 +34,13 @@ def placed(options, grains, diameters, scale):
     return positions
 
 
-def mean_diameter(diameters):
-    """Of a grain of mean volume: what fix spot calls d."""
-    return float(np.cbrt(np.mean(diameters**3)))
+def fitted(options, positions, diameters, height):
+    """Walls, and their coverage, see ``fit``; height : of the outlet"""
+    if np.ptp(diameters) > 0:
+        nearly = bool(np.abs(diameters / diameters.mean() - 1).max() <= NEARLY_EQUAL)
+        raise AnalysisError("--fit finds walls by the layer of equal grains at them: " + nearly * "give --equal-sizes, or "
+                            + "name the walls by --box, --cylinder, --cone or --walls")
+    return fit(options.fit, positions, mean_diameter(diameters), height)
 
 
 def walls_of(options, positions, diameters):
@@ -69,10 +50,7 @@ def walls_of(options, positions, diameters):
     if options.walls:
         return None, tuple(options.orifice)
     if options.fit:
-        if np.ptp(diameters) > 0:
-            raise AnalysisError("--fit finds walls by the layer of equal grains at them; of other sizes name the walls by --box, --cylinder, "
-                                "--cone or --walls")
-        found, coverage = fit(options.fit, positions, diameter, height)
+        found, coverage = fitted(options, positions, diameters, height)
     elif options.box:
         found = shapes.box(*options.box)
     elif options.cylinder:
@@ -84,9 +62,17 @@ def walls_of(options, positions, diameters):
     orifice = tuple(options.orifice) if len(options.orifice) == 4 else (*middle, 0.0, options.orifice[0])
     if options.fit:
         found = snapped(found, orifice, diameter)
-        print("fit: " + "; ".join(f"{part}, {share:.2f} grains at it for each d^2" for part, (_, share) in zip(found.parts, coverage)))
-    found = shapes.around(found, orifice, diameter)
-    return found, orifice
+        print("fit: " + "; ".join(f"{part}, {share:.2f} grains at it for each d^2"
+                                  for part, (_, share) in zip(found.parts, coverage)))
+    return shapes.around(found, orifice, diameter), orifice
+
+
+def check_outlet(walls, orifice, positions, diameters):
+    """Warn of what may be meant otherwise; raises AnalysisError where the outlet is outside of the walls."""
+    diameter = mean_diameter(diameters)
+    require_inside(walls, orifice, diameter)
+    for doubt in doubts(walls, orifice, float((positions[:, 2] - diameters / 2).min()), diameter):
+        command_line.print_warning(doubt)
 
 
 def check_places(walls, positions, diameters):
@@ -112,10 +98,12 @@ def import_packing():
     if not options.scale and not GRAINS[0] <= diameter <= GRAINS[1]:
         command_line.print_warning(f"grains of {diameter:g} m: is the file in another unit? (--length-unit mm)")
     if np.ptp(diameters) > EQUAL * diameter:
-        command_line.print_warning("the deck's critical packing fraction is that of equal grains: a mixture flows denser (docs/parameters.md)")
+        command_line.print_warning("the deck's critical packing fraction is that of equal grains: "
+                                   "a mixture flows denser (examples/bidisperse/README.md)")
     positions = placed(options, grains, diameters, scale)
     walls, orifice = walls_of(options, positions, diameters)
     if walls:
+        check_outlet(walls, orifice, positions, diameters)
         check_places(walls, positions, diameters)
     relaxed = relax(positions, diameters, options.overlap, walls, Progress("import", terminal_only=True))
     print(f"overlaps: the largest was {relaxed.before:.4f} d and is {relaxed.after:.4f} d, after {relaxed.sweeps} sweeps; no grain went "
@@ -130,7 +118,7 @@ def save(options, grains, positions, diameters, walls, orifice, folder):
     with open(deck, "w", encoding="utf-8") as out:
         out.write(writing.deck(options.packing, "packing.data", positions, mean_diameter(diameters), walls, options.walls, orifice,
                                options.outflow, options.g or 9.81, options.run, folder, not options.scale))
-    print(f"{data} and {deck} are written: lmp -in in.spot, in that folder")
+    print(f"{data} and {deck} are written: lmp -in in.spot, in that folder\ntry: spot-check {deck}")
 
 
 def main():
