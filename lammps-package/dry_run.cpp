@@ -154,14 +154,18 @@ void write_outlets(std::ostream& out, const DryRun& run) {
 
 std::string describe(const DryRun& run) {
   const spot::SpotParameters& p = run.command.spots;
+  double smallest = run.largest;
+  for (const spot::Grain& grain : run.grains) smallest = std::min(smallest, 2.0 * spot::radius_in(run.largest, grain));
   const Walks walks = walk(run);
   const auto point = [](std::ostream& out, const Vector3& at) {
     out << '[' << at.x() << ", " << at.y() << ", " << at.z() << ']';
   };
   std::ostringstream out;
   out << std::setprecision(9) << "{\"format\": 1, \"units\": \"" << run.units << "\", \"grains\": " << run.grains.size()
-      << ", \"diameter\": " << run.diameter << ", \"timestep\": " << run.timestep << ", \"window\": " << run.window
-      << ", \"steps\": " << run.steps << ", \"memory\": " << run.memory << ", \"threads\": " << run.command.threads
+      << ", \"diameter\": " << run.diameter << ", \"smallest\": " << smallest << ", \"largest\": " << run.largest
+      << ", \"recirculates\": " << (run.command.recirculation ? "true" : "false") << ", \"timestep\": " << run.timestep
+      << ", \"window\": " << run.window << ", \"steps\": " << run.steps << ", \"memory\": " << run.memory
+      << ", \"threads\": " << run.command.threads
       << ",\n\"time_ordered\": " << (*run.command.time_ordered ? "true" : "false") << ", \"profile\": \""
       << p.profile->name() << "\", \"radius\": " << p.radius << ", \"influence\": " << p.influence
       << ", \"fixed_volume\": " << p.fixed_volume << ", \"step_height\": " << p.step_height

@@ -93,7 +93,8 @@ Entries other_entries(const SpotCommand& command) {
 }  // namespace
 
 std::string describe(const SceneOfDumps& scene) {
-  Entries entries = {{"program", "\"LAMMPS fix spot\""},
+  Entries entries = {{"format", "1"},  // of the file
+                     {"program", "\"LAMMPS fix spot\""},
                      {"diameter", number(scene.diameter)},
                      {"gravity", number(scene.gravity)},
                      {"timestep", number(scene.timestep)},

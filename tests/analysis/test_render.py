@@ -262,6 +262,7 @@ def test_vtk(runs, tmp_path):
     (["a", "a", "-o", "x.vtk"], "VTK wants the dumps of one run"),
     (["a", "a", "--keep", "x.npz"], "--keep wants one run"),
     (["a", "-o", "x.png", "--slice", "1", "1"], "--slice 1 1: the first must be below the second"),
+    (["a", "-o", "x.png", "--slice", "100", "101"], "a: no grain between y = 100 and 101 d (--slice); they are at 0 to 5 d"),
     (["a", "-o", "x.png", "--height", "20"], "--height 20 must be 100 to 4000 pixels"),
     (["a", "-o", "x.png", "--every", "0"], "--every 0 must be 1 or more"),
     (["a", "-o", "x.png", "--times", "7"], "a: no snapshot at a time that was asked for"),

@@ -30,7 +30,7 @@ std::string scene_of(const std::string& walls, double opening_time = 0.0,
 }
 
 const std::string units =
-    R"({"program": "LAMMPS fix spot", "diameter": 1, "gravity": 9.75, "timestep": 0.5, "grains": 1000, )";
+    R"({"format": 1, "program": "LAMMPS fix spot", "diameter": 1, "gravity": 9.75, "timestep": 0.5, "grains": 1000, )";
 
 TEST(SceneFile, TellsABoxWithAnOrificeInItsMiddle) {
   EXPECT_EQ(scene_of("box -20 20 -4 4 orifice 0 0 0 3.5 outflow 50"),

@@ -25,6 +25,7 @@ def test_it_ends_before_the_run_and_writes_no_dump(tmp_path, program):
     assert (tmp_path / "grains.dump").read_text() == "of a run before"
     found = json.loads((tmp_path / "dry.json").read_text())
     assert found["format"] == 1 and found["grains"] == len(lattice()) and found["diameter"] == 1 and found["steps"] == 30
+    assert found["smallest"] == found["largest"] == 1 and found["recirculates"] is False
     assert found["timestep"] == 0.1 and found["units"] == "lj" and found["memory"] > 1e5
 
 
@@ -48,6 +49,7 @@ def test_unequal_grains_leave_as_they_are_asked_to(tmp_path):
     found = dry(tmp_path, fix=FIX.replace("injection 100", "outflow 40 volume 20"))
     grain = np.pi / 6 * np.mean(diameters**3)
     assert found["diameter"] == pytest.approx(np.cbrt(np.mean(diameters**3)))
+    assert found["smallest"] == pytest.approx(0.6) and found["largest"] == 1
     (outlet,) = found["outlets"]
     assert outlet["outflow"] == pytest.approx(40) and outlet["births"] * found["spot_volume"] == pytest.approx(40 * grain)
 

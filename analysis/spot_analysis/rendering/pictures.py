@@ -51,8 +51,11 @@ def take_pictures(run, colour, colouring, slab, wanted, progress):
 
     slab : (low, high) in y; None takes the layer at the front wall, or the middle where no walls are known
     wanted : tells of a time whether it is drawn
+
+    Raises AnalysisError where a slab that was asked for has no grain at any of these times, though there are some.
     """
-    pictures = []
+    pictures, seen = [], []
+    asked = slab
     for grains in run.snapshots():
         colouring.see(grains)
         if slab is None and len(grains.ids):
@@ -61,6 +64,7 @@ def take_pictures(run, colour, colouring, slab, wanted, progress):
             continue
         chosen = np.zeros(0, dtype=bool) if slab is None else \
             (grains.positions[:, 1] >= slab[0]) & (grains.positions[:, 1] < slab[1])
+        seen += [extent(grains.positions[:, 1]) for extent in (np.min, np.max) if len(grains.ids)]
         values = colouring.values(grains, chosen)
         x, y, z = grains.positions[chosen].T
         far_first = np.argsort(-y, kind="stable")
@@ -68,6 +72,9 @@ def take_pictures(run, colour, colouring, slab, wanted, progress):
         pictures.append(Picture(grains.time, x[far_first], z[far_first], grains.diameters[chosen][far_first], values[far_first],
                                 spots[:, [0, 2]]))
         progress(f"{run.label}: {len(pictures)} snapshots read")
+    if asked is not None and seen and not any(len(picture.x) for picture in pictures):
+        raise AnalysisError(f"{run.path}: no grain between y = {asked[0]:g} and {asked[1]:g} d (--slice); they are at "
+                            f"{min(seen):.4g} to {max(seen):.4g} d")
     return Reel(run.label, colour, colouring.LABEL, run.container, run.scene is not None, pictures)
 
 
