@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,11 +18,14 @@ from synthetic import SCENE, frame_text, plug, write_plug_flow, write_text
 
 from spot_analysis.base.errors import AnalysisError
 from spot_analysis.reading.container import Container
+from spot_analysis.reading.hopper import Hopper
+from spot_analysis.reading.packing_file import read_packing
 from spot_analysis.rendering.colouring import COLOURINGS
 from spot_analysis.rendering.drawing import View, draw
-from spot_analysis.rendering.pictures import Picture, Reel, at_common_times, load_pictures, save_pictures, take_pictures
+from spot_analysis.rendering.kept_pictures import load_pictures, save_pictures
+from spot_analysis.rendering.pictures import Picture, Reel, at_common_times, take_pictures
 from spot_analysis.rendering.source import Run
-from spot_analysis.statistics.voronoi_cells import cells_in_container
+from spot_analysis.statistics.voronoi_cells import cells_in_container, cells_in_hopper
 
 TIMES = range(0, 10, 2)
 
@@ -141,6 +145,50 @@ def test_a_scene_of_units_only(tmp_path):
     assert (start.time, end.time) == (0, pytest.approx(50)) and np.allclose(start.positions[1], [1, 0, 0.25])
     done = script("render.py", bare(tmp_path / "b", scene={**units, "half_width_x": 1.0}), "-o", tmp_path / "x.png")
     assert done.returncode == 1 and "scene key 'half_depth_y' is missing" in done.stderr
+
+
+HOPPER = Hopper(4.0, 10.0, 15.0)
+HOPPER_SCENE = {"diameter": 0.004, "gravity": 10.0, "timestep": 0.01, "orifice_radius": 0.016, "cylinder_radius": 0.04, "cone_height": 0.06}
+
+
+def test_a_hopper_is_told_by_its_scene(tmp_path):
+    run = Run("run", str(bare(tmp_path / "a", scene={**HOPPER_SCENE, "program": "any", "cone_angle": 21.8})))
+    assert np.allclose(list(vars(run.container).values()), [4, 10, 15, 0]) and not run.has_front
+    assert reel_of(run.path, "layer", (4.5, 6)).container.section == 4.5 and reel_of(run.path, "layer").container.section == 1.5
+    save_pictures(tmp_path / "kept.npz", reel_of(run.path, "layer", (4.5, 6)))
+    assert load_pictures("run", str(tmp_path / "kept.npz"), always).container == replace(run.container, section=4.5)
+    done = script("render.py", bare(tmp_path / "b", scene={**HOPPER_SCENE, "cone_height": -1}), "-o", tmp_path / "x.png")
+    assert done.returncode == 1 and "'cone_height' must be a positive number" in done.stderr
+
+
+def test_walls_of_a_hopper():
+    """In the middle straight lines; beside it where the slab is widest, a hyperbola; nothing beyond the cylinder."""
+    for x, z in HOPPER.lines(30):
+        assert np.allclose(abs(x), np.minimum(4 + 6 * z / 15, 10)) and (z[0], z[-1]) == (0, 30)
+    for x, z in HOPPER.cut((-8, -6)).lines(30):
+        assert np.allclose(np.hypot(x, -6), np.minimum(4 + 6 * z / 15, 10)) and (z[0], z[-1]) == (5, 30)
+    assert HOPPER.cut((-8, -6)).half_width == 8 and HOPPER.cut((-1, 3)) == HOPPER.cut(None) == HOPPER
+    assert HOPPER.cut((11, 12)).lines(30) == []
+    picture = Picture(0.0, *[np.array([5.0])] * 4)
+    image = np.asarray(draw([("", picture, HOPPER, "")], View((-12, 12), (-1, 20), 436, (0, 1)), "layer").convert("L"))
+    rows = [430 - round((z + 1) * 400 / 21) for z in (0.5, 7.5, 18)]
+    for row, width in zip(rows, (4.2, 7, 10)):
+        black = np.flatnonzero(image[row] < 128)
+        assert np.ptp(black) * 21 / 400 == pytest.approx(2 * width, abs=0.2)
+
+
+def test_packing_fraction_at_the_walls_of_a_hopper():
+    """Cells of the grains between two heights fill what is between the walls there."""
+    grains = read_packing(str(ANALYSIS.parent / "examples" / "own-hopper" / "packing.data.gz")).positions / 0.003
+    cells = cells_in_hopper(grains, HOPPER)
+    z = grains[:, 2]
+    radius = lambda height: min(4 + 6 * height / 15, 10)
+    for low, high in ((3, 12), (17, 24)):
+        between = (z > low) & (z < high)
+        volume = np.pi * (high - low) * (radius(low)**2 + radius(low) * radius(high) + radius(high)**2) / 3
+        assert cells[between].sum() == pytest.approx(volume, rel=0.01)
+    images = HOPPER.images(grains, 1.0)
+    assert (np.hypot(*images.T[:2]) > np.minimum(4 + 6 * images[:, 2] / 15, 10) - 0.02).all()
 
 
 def test_a_grain_is_drawn_in_its_place_and_colour():

@@ -11,7 +11,8 @@ from ..base.progress import Progress
 from ..rendering import files
 from ..rendering.colouring import COLOURINGS
 from ..rendering.drawing import draw, view_of
-from ..rendering.pictures import at_common_times, load_pictures, save_pictures, take_pictures
+from ..rendering.kept_pictures import load_pictures, save_pictures
+from ..rendering.pictures import at_common_times, take_pictures
 from ..rendering.source import Run
 from ..rendering.vtk import write_points
 from ..statistics.snapshot import TIME_TOLERANCE

@@ -16,7 +16,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(
         description=DESCRIPTION, epilog="RUN is a folder, file or wildcard of LAMMPS or LIGGGHTS dumps, what --keep wrote, or "
         "statistics of measure.py (a picture of the front layer every 10 tau). With a scene.json beside the dumps times are in "
-        "tau, and the walls in it are drawn; without, times are steps.")
+        "tau, and the walls in it, of a box or of a cone under a cylinder, are drawn; without, times are steps.")
     parser.add_argument("runs", nargs="+", metavar="[NAME=]RUN", help="from left to right; snapshots that all of them have are drawn")
     parser.add_argument("-o", "--output", metavar="FILE", help="x.png: all times in one row; x.gif, x.webp, x.mp4: an animation; "
                         "x.vtk: all grains of a single run, a file x.0000.vtk, x.0001.vtk ... a snapshot; without an ending: a "
@@ -26,7 +26,7 @@ def parse_arguments():
     parser.add_argument("--layer", type=_positive, default=10, metavar="D", help="height of the starting layers (default: %(default)s d)")
     parser.add_argument("--range", nargs=2, type=float, metavar=("LOW", "HIGH"), help="of the colours (default: 98 %% of all values)")
     parser.add_argument("--slice", nargs=2, type=float, metavar=("LOW", "HIGH"), help="draw grains with y between these, in d (default: "
-                        "the layer at the front wall, 1 d deep; without scene.json 2 d in the middle)")
+                        "the layer at the front wall, 1 d deep; of other silos, and without scene.json, 2 d in the middle)")
     parser.add_argument("--times", nargs="+", type=float, metavar="T", help="draw these only (tau, or steps without scene.json)")
     parser.add_argument("--from", dest="start", type=float, default=-math.inf, metavar="T")
     parser.add_argument("--to", dest="end", type=float, default=math.inf, metavar="T")

@@ -47,6 +47,17 @@ class Container:
         """x of the orifices' middles."""
         return tuple((2 * k + 1 - self.orifices) * self.half_width / self.orifices for k in range(self.orifices))
 
+    def cut(self, slab):
+        """The walls that are drawn of a slab (low, high) along y."""
+        return self
+
+    def lines(self, top):
+        """Walls, up to the height ``top``, and base as seen along y: x and z of the ends of each, two lists."""
+        rims = [x + side * self.orifice_radius for x in self.middles for side in (-1, 1)]
+        ends = [-self.half_width, *rims, self.half_width]
+        return [([x, x], [0, top]) for x in (-self.half_width, self.half_width)] + \
+            [(list(part), [0, 0]) for part in zip(ends[::2], ends[1::2])]
+
     @property
     def period(self):
         """Of y; None where there are walls."""

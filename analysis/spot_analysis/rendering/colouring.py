@@ -6,7 +6,8 @@ import math
 import numpy as np
 
 from ..base.errors import AnalysisError
-from ..statistics.voronoi_cells import MIRRORED, cells_in_container, cells_without_walls
+from ..reading.hopper import Hopper
+from ..statistics.voronoi_cells import MIRRORED, cells_in_container, cells_in_hopper, cells_without_walls
 
 EQUAL = 0.01  # relative difference of diameters up to which grains are of one size
 
@@ -50,14 +51,18 @@ class Speed:
 class PackingFraction:
     """Volume of the grain over that of its Voronoi cell, which the walls of scene.json cut off.
 
-    Unknown at the free surface, and, where no scene.json tells the walls or the silo is periodic, at walls as well.
+    Unknown at the free surface, at the outlet of a hopper, and at walls where no scene.json tells them or the silo is
+    periodic.
     """
 
     LABEL = "local packing fraction"
 
     def __init__(self, run, height):
         self._path = run.path
-        self._container = run.container if run.has_front else None
+        self._cells = cells_without_walls
+        if run.has_front or isinstance(run.container, Hopper):
+            cells = cells_in_container if run.has_front else cells_in_hopper
+            self._cells = lambda points: cells(points, run.container)
 
     def see(self, grains):
         sizes = grains.diameters
@@ -71,8 +76,7 @@ class PackingFraction:
             return np.empty(0)
         near = (y > y[chosen].min() - MIRRORED) & (y < y[chosen].max() + MIRRORED)
         points = grains.positions[near]
-        volumes = cells_in_container(points, self._container) if self._container else cells_without_walls(points)
-        fractions = math.pi / 6 * grains.diameters[near]**3 / volumes
+        fractions = math.pi / 6 * grains.diameters[near]**3 / self._cells(points)
         return np.where(fractions > 0, fractions, math.nan)[chosen[near]]
 
 

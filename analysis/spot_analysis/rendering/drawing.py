@@ -95,9 +95,5 @@ def _draw_spots(axis, spots, radius):
 
 def _draw_walls(axis, container, top):
     wall = {"color": "black", "linewidth": 1.2, "solid_capstyle": "butt"}
-    for side in (-1, 1):
-        axis.plot([side * container.half_width] * 2, [0, top], **wall)
-    rims = [x + side * container.orifice_radius for x in container.middles for side in (-1, 1)]
-    ends = [-container.half_width, *rims, container.half_width]
-    for low, high in zip(ends[::2], ends[1::2]):
-        axis.plot([low, high], [0, 0], **wall)
+    for x, z in container.lines(top):
+        axis.plot(x, z, **wall)

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is drawn of each snapshot: a slab of grains seen along y, and the file that keeps such pictures."""
+"""What is drawn of each snapshot: a slab of grains seen along y."""
 
-import json
-import zipfile
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..base.errors import AnalysisError
-from ..reading.container import Container
-from ..statistics import run_statistics
 from ..statistics.snapshot import TIME_TOLERANCE
 
-FORMAT = "spot-analysis pictures 1"
-QUANTUM = run_statistics.PICTURE_QUANTUM  # d
 FRONT = 1.0  # d; depth of the layer at the front wall
 MIDDLE = 1.0  # d to either side of the middle where no walls are known
 
@@ -75,7 +69,8 @@ def take_pictures(run, colour, colouring, slab, wanted, progress):
     if asked is not None and seen and not any(len(picture.x) for picture in pictures):
         raise AnalysisError(f"{run.path}: no grain between y = {asked[0]:g} and {asked[1]:g} d (--slice); they are at "
                             f"{min(seen):.4g} to {max(seen):.4g} d")
-    return Reel(run.label, colour, colouring.LABEL, run.container, run.scene is not None, pictures)
+    container = run.container and run.container.cut(slab)
+    return Reel(run.label, colour, colouring.LABEL, container, run.scene is not None, pictures)
 
 
 def _default_slab(run, grains):
@@ -83,51 +78,6 @@ def _default_slab(run, grains):
         return -np.inf, FRONT - run.container.half_depth
     middle = (grains.positions[:, 1].min() + grains.positions[:, 1].max()) / 2
     return middle - MIDDLE, middle + MIDDLE
-
-
-def save_pictures(path, reel):
-    """Write a Reel; positions and diameters to QUANTUM."""
-    header = {"format": FORMAT, "colour": reel.colour, "colour_label": reel.colour_label, "tau": reel.tau,
-              "container": vars(reel.container) if reel.container else None}
-    # neighbours in the file look alike when sorted by height, so it compresses better; a layer hides nothing
-    orders = [np.argsort(picture.z, kind="stable") for picture in reel.pictures]
-    columns = {name: np.concatenate([getattr(picture, name)[order] for picture, order in zip(reel.pictures, orders)])
-               for name in ("x", "z", "diameters", "values")}
-    lengths = {name: np.rint(columns[name] / QUANTUM).astype(np.int32) for name in ("x", "z", "diameters")}
-    with open(path, "wb") as handle:
-        np.savez_compressed(handle, header=json.dumps(header), times=[picture.time for picture in reel.pictures],
-                            sizes=[len(picture.x) for picture in reel.pictures],
-                            values=columns["values"].astype(np.float16), **lengths)
-
-
-def load_pictures(label, path, wanted):
-    """The Reel in ``path``: kept pictures, or those of the front layer in a statistics file."""
-    try:
-        with np.load(path, allow_pickle=False) as stored:
-            header = json.loads(str(stored["header"]))
-            if header["format"] != FORMAT:
-                return _of_statistics(label, path, wanted)
-            container = header["container"] and Container(**header["container"])
-            ends = np.cumsum(stored["sizes"])
-            columns = [np.split(stored[name], ends[:-1]) for name in ("x", "z", "diameters", "values")]
-            times = stored["times"]
-    except OSError as error:
-        raise AnalysisError(f"{path}: {error.strerror or error}") from error
-    except (EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
-        raise AnalysisError(f"{path}: neither pictures kept by render.py nor statistics of measure.py ({error})") from error
-    pictures = [Picture(float(time), x * QUANTUM, z * QUANTUM, diameters * QUANTUM, values.astype(float))
-                for time, x, z, diameters, values in zip(times, *columns) if wanted(time)]
-    return Reel(label, header["colour"], header["colour_label"], container, header["tau"], pictures)
-
-
-def _of_statistics(label, path, wanted):
-    run = run_statistics.load(path)
-    pictures = []
-    for index, time in enumerate(run.picture_times):
-        x, z, layer = run.picture(index)
-        if wanted(time):
-            pictures.append(Picture(float(time), x, z, np.ones(len(x)), np.where(layer < 0, np.nan, layer)))
-    return Reel(label, "layer", None, run.scene.container(), True, pictures)
 
 
 def at_common_times(reels):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.errors import AnalysisError
+from ..reading.container import Container
 from ..reading.dump import read_frames
 from ..reading.scene_beside import scene_beside
 from ..reading.spots import read_spots
@@ -38,6 +39,7 @@ class Run:
 
     label : its title
     path : of the dumps
+    container : its walls in units of d, a Container or a Hopper; None where no scene.json tells them
     diameter : d in the dumps' units where no scene.json tells it; None takes the median of the first snapshot's column
         radius or diameter
     """
@@ -45,19 +47,14 @@ class Run:
     def __init__(self, label, path, diameter=None, warn=warnings.warn):
         self.label = label
         self.path = path
-        self.scene, self._is_box = scene_beside(path)
+        self.scene, self.container = scene_beside(path)
         self._diameter = self.scene.diameter if self.scene else diameter
         self._warn = warn
 
     @property
-    def container(self):
-        """Walls in units of d, None where no scene.json tells them."""
-        return self.scene.container() if self._is_box else None
-
-    @property
     def has_front(self):
         """Whether there are walls at the front and at the back."""
-        return self._is_box and not self.scene.periodic_y
+        return isinstance(self.container, Container) and not self.container.periodic
 
     def snapshots(self):
         """Grains of each snapshot in the order of time; raises DumpError."""

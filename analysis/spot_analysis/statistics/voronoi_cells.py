@@ -96,6 +96,14 @@ def cells_in_container(positions, container):
     return _first_cells(with_mirror_images(container.in_period(positions), container), len(positions))
 
 
+def cells_in_hopper(positions, hopper):
+    """Volume of the cell of each grain (n,), d^3, cut off by cone and cylinder; infinite at free surface and outlet.
+
+    A wall is taken for the plane that touches it next to each grain.
+    """
+    return _first_cells(np.vstack([positions, hopper.images(positions, MIRRORED)]), len(positions))
+
+
 def cells_without_walls(positions):
     """Volume of the cell of each grain (n,), d^3; infinite at walls and at the free surface."""
     return _first_cells(positions, len(positions))
