@@ -43,12 +43,37 @@ def test_numbers():
 
 @pytest.mark.parametrize("change, marked", [
     ({"radius": 2.6}, "radius of spots R_s"), ({"speed": 25.0}, "speed v_s"), ({"dilation": 0.03}, "dilation c_0"), ({"window": 0.5}, "climb of a spot in it"),
-    ({"outlets": [{**RUN["outlets"][0], "half_widths": [2.5, 4]}]}, "narrowest outlet")])
+    ({"outlets": [{**RUN["outlets"][0], "half_widths": [2.5, 4]}]}, "narrowest outlet"),
+    ({"outlets": [{**RUN["outlets"][0], "half_widths": [9, 8]}]}, "narrowest outlet"),
+    ({"smallest": 0.7, "largest": 1.4}, "smallest grain"), ({"smallest": 0.9, "largest": 1.8}, "largest grain")])
 def test_what_is_outside_is_marked(change, marked):
     found = rows(**change)
     assert found[marked][0].fits is False
     text = table([row for same in found.values() for row in same])
     assert any(line.startswith(f"! {marked} ") for line in text.splitlines()) and marked in text.splitlines()[-1]
+
+
+@pytest.mark.parametrize("half_width, note", [(4.0005, "calibrations and DEM"), (7.5, "compared with DEM; calibrations have 6.5 to 8")])
+def test_outlets_that_were_compared(half_width, note):
+    (row,) = rows(outlets=[{**RUN["outlets"][0], "half_widths": [half_width] * 2}])["narrowest outlet"]
+    assert row.fits and row.note.startswith(note)
+
+
+def test_sizes_that_were_compared():
+    small = 9**(1 / 3) / 16**(1 / 3)  # eight grains, and one twice as wide, whose mean volume is that of d
+    found = rows(smallest=round(small, 4), largest=round(2 * small, 4), critical=0.655)
+    assert found["largest over smallest grain"][0].value == pytest.approx(2, rel=1e-3)
+    assert all(row.fits is not False for same in found.values() for row in same)
+    assert "mixtures" in found["critical fraction phi_c"][0].note
+    equal = rows(smallest=1.0, largest=1.0, critical=0.62)
+    assert "smallest grain" not in equal and "mixtures" not in equal["critical fraction phi_c"][0].note
+    assert rows(critical=0)["critical fraction phi_c"][0].note.startswith("0: off") and "critical fraction phi_c" not in rows()
+
+
+def test_what_recirculates_is_never_empty():
+    found = rows(recirculates=True)
+    assert "empty after" not in found and found["turned over every"][0].value == 20
+    assert "empties" not in found["processor time"][0].note and "empties" in rows()["processor time"][0].note
 
 
 def test_an_outlet_each_and_no_cost_in_the_order_of_time():

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What follows from a dry run of a deck: numbers, and what was calibrated on DEM or compared with it.
 
-Ranges of parameters span the calibrations in analysis/README.md, those of 2006 included; the outlet's, what was compared.
+Ranges of parameters span the calibrations in analysis/README.md, those of 2006 included; those of outlet and sizes, what was
+compared.
 """
 
 import math
@@ -10,15 +11,19 @@ from dataclasses import dataclass
 from ..base.errors import AnalysisError
 
 GRAVITY = {"si": 9.81, "cgs": 981.0, "lj": 1.0}  # by units of LAMMPS
-MOVE = 12e-6  # s of one core: 841,352 moves of examples/own-hopper in 10 s of processor time, one run beside other jobs
+MOVE = 8e-6  # s of one core, on a quiet machine: examples/silo and own-hopper, 28 and 16 to 17 s for a simulated second
 SPOT_BYTES = 144  # of one live spot: its state, 88, and its row of output, 56
 ROUNDING = 1e-6  # of numbers that a deck has as text
+LOOSE = 0.01  # of lengths over a d that is the mean of sizes written with few digits
 CALIBRATED = "calibrations for glass beads"
+OUTLETS = (6.5, 8.0, 15.0)  # d: from, to those of the calibrations, to the widest that was compared
+SIZES = (0.825, 1.652)  # d: of examples/bidisperse
+EQUAL = 1.0001  # largest diameter over the smallest, up to which grains are of one size
 
 
 @dataclass(frozen=True)
 class Row:
-    """low, high : of the range, None where there is none; note : on the number or on the range"""
+    """low, high : of the range, None where there is none; note : on the number or on the range; slack : share of bounds"""
 
     name: str
     value: float
@@ -26,6 +31,7 @@ class Row:
     low: float = None
     high: float = None
     note: str = ""
+    slack: float = ROUNDING
 
     @property
     def fits(self):
@@ -33,7 +39,7 @@ class Row:
         if self.low is None and self.high is None:
             return None
         low, high = (-math.inf if self.low is None else self.low), (math.inf if self.high is None else self.high)
-        return low * (1 - ROUNDING) <= self.value <= high * (1 + ROUNDING)
+        return low * (1 - self.slack) <= self.value <= high * (1 + self.slack)
 
 
 def tau_of(run, gravity=None):
@@ -51,24 +57,25 @@ def numbers(run, tau):
     grain = math.pi / 6 * d**3
     outflow = sum(outlet["outflow"] for outlet in run["outlets"])
     end = run["steps"] * run["timestep"]
-    narrowest = min(2 * min(outlet["half_widths"]) / d for outlet in run["outlets"])
     parabolic = run["profile"] == "parabolic"
     rows = [
         Row("grains", run["grains"], "", None, 3e7, "what a restart file holds"),
         Row("diameter d", d, "length"),
         Row("tau = sqrt(d/g)", tau, time),
-        Row("narrowest outlet", narrowest, "d", 6.5, 8, "that were compared with DEM; below 6, DEM may clog"),
+        *_sizes(run, d),
+        _outlet(min(2 * min(outlet["half_widths"]) / d for outlet in run["outlets"])),
         Row("radius of spots R_s", run["radius"] / d, "d", *((3.4, 4.1) if parabolic else (2.5, 3.03)), CALIBRATED),
         Row("volume of a spot V_s", run["spot_volume"] / grain, "grains", 0.1, 0.21, CALIBRATED),
         Row("grains in a spot", run["enclosed"] / grain, "", None, None, "at a packing fraction of 0.58"),
         Row("diffusion length b_s", run["diffusion"] / d, "d", 1.1, 1.6, CALIBRATED),
         Row("speed v_s", run["speed"] * tau / d, "d/tau", 4, 10, CALIBRATED + "; else g or the units are others"),
+        *_critical(run),
         Row("dilation c_0", run["dilation"], "", 0, 0, "0: all spots climb at v_s"),
         Row("outflow", outflow, f"grains/{time}", None, None, "births x V_s; with *injection* 2 to 6 % less leave"),
         Row("outflow", outflow * tau, "grains/tau", None, None, "an input: nothing here checks it"),
         *[Row(f"  through outlet {k}", outlet["outflow"] * tau, "grains/tau") for k, outlet in enumerate(run["outlets"], 1)
           if len(run["outlets"]) > 1],
-        Row("empty after", run["grains"] / outflow / tau, "tau", None, None, "at this outflow"),
+        _emptied(run, outflow * tau),
         Row("length of the run", end / tau, "tau", None, None, f"{run['steps']} steps of {run['timestep'] / tau:.3g} tau"),
         Row("window", run["window"] / tau, "tau", None, None, f"{round(run['timestep'] / run['window'])} in a step"),
         Row("climb of a spot in it", run["speed"] * run["window"] / d, "d", *((0.01, 0.8) if not run["time_ordered"] else (None, None)),
@@ -80,11 +87,52 @@ def numbers(run, tau):
     return rows + ([] if run["time_ordered"] else _cost(run, end, seconds))
 
 
+def _outlet(width):
+    """width : d"""
+    low, calibrated, high = OUTLETS
+    note = "calibrations and DEM; below 6, DEM may clog"
+    if calibrated * (1 + LOOSE) < width <= high * (1 + LOOSE):
+        note = f"compared with DEM; calibrations have {low:g} to {calibrated:g}"
+    return Row("narrowest outlet", width, "d", low, high, note, LOOSE)
+
+
+def _emptied(run, outflow):
+    """outflow : grains a tau"""
+    taken = run["grains"] / outflow
+    if run.get("recirculates"):  # which older programs don't tell
+        return Row("turned over every", taken, "tau", None, None, "what leaves comes in again")
+    return Row("empty after", taken, "tau", None, None, "at this outflow")
+
+
+def _is_mixture(run):
+    return run.get("largest", 1) > EQUAL * run.get("smallest", 1)  # which older programs don't tell
+
+
+def _sizes(run, d):
+    if not _is_mixture(run):
+        return []
+    ratio = run["largest"] / run["smallest"]
+    return [Row("largest over smallest grain", ratio, "", None, 2, "two sizes, compared with DEM", LOOSE),
+            Row("smallest grain", run["smallest"] / d, "d", SIZES[0], None, "examples/bidisperse", LOOSE),
+            Row("largest grain", run["largest"] / d, "d", None, SIZES[1], "examples/bidisperse", LOOSE)]
+
+
+def _critical(run):
+    """phi_c, where the program tells it; 0 switches the closure off."""
+    if "critical" not in run:
+        return []
+    note = "equal glass beads have 0.62" + ("; of mixtures: examples/bidisperse" if _is_mixture(run) else "")
+    note = note if run["critical"] else "0: off; beds flow as dense as they are"
+    return [Row("critical fraction phi_c", run["critical"], "", None, None, note)]
+
+
 def _cost(run, end, seconds):
     """Processor time, where a move costs about the same: not in the order of time."""
     per_time = MOVE * run["moves_per_time"]
     found = [Row("processor time", per_time, "s/s", None, None, "estimate, a simulated second of a full silo")] if seconds else []
-    return found + [Row("processor time", per_time * end, "s", None, None, "estimate, the run; less as the silo empties")]
+    less = "" if run.get("recirculates") else "; less as the silo empties"
+    less += "; sizes cost up to 2.6 times as much" if _is_mixture(run) else ""
+    return found + [Row("processor time", per_time * end, "s", None, None, "estimate, the run" + less)]
 
 
 def table(rows):
