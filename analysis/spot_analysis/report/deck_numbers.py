@@ -1,45 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What follows from a dry run of a deck: numbers, and what was calibrated on DEM or compared with it.
 
-Ranges of parameters span the calibrations in analysis/README.md, those of 2006 included; those of outlet and sizes, what was
-compared.
+Ranges of parameters span the calibrations in analysis/README.md, those of 2006 included; those of outlet and sizes, what
+was compared.
 """
 
 import math
-from dataclasses import dataclass
 
 from ..base.errors import AnalysisError
+from .deck_rows import Row, critical, is_mixture, outlet, sizes
 
 GRAVITY = {"si": 9.81, "cgs": 981.0, "lj": 1.0}  # by units of LAMMPS
 MOVE = 8e-6  # s of one core, on a quiet machine: examples/silo and own-hopper, 28 and 16 to 17 s for a simulated second
 SPOT_BYTES = 144  # of one live spot: its state, 88, and its row of output, 56
-ROUNDING = 1e-6  # of numbers that a deck has as text
-LOOSE = 0.01  # of lengths over a d that is the mean of sizes written with few digits
 CALIBRATED = "calibrations for glass beads"
-OUTLETS = (6.5, 8.0, 15.0)  # d: from, to those of the calibrations, to the widest that was compared
-SIZES = (0.825, 1.652)  # d: of examples/bidisperse
-EQUAL = 1.0001  # largest diameter over the smallest, up to which grains are of one size
-
-
-@dataclass(frozen=True)
-class Row:
-    """low, high : of the range, None where there is none; note : on the number or on the range; slack : share of bounds"""
-
-    name: str
-    value: float
-    unit: str
-    low: float = None
-    high: float = None
-    note: str = ""
-    slack: float = ROUNDING
-
-    @property
-    def fits(self):
-        """None where there is no range."""
-        if self.low is None and self.high is None:
-            return None
-        low, high = (-math.inf if self.low is None else self.low), (math.inf if self.high is None else self.high)
-        return low * (1 - self.slack) <= self.value <= high * (1 + self.slack)
 
 
 def tau_of(run, gravity=None):
@@ -55,25 +29,25 @@ def numbers(run, tau):
     d, seconds = run["diameter"], run["units"] in ("si", "cgs")
     time = "s" if seconds else "time"
     grain = math.pi / 6 * d**3
-    outflow = sum(outlet["outflow"] for outlet in run["outlets"])
+    outflow = sum(one["outflow"] for one in run["outlets"])
     end = run["steps"] * run["timestep"]
     parabolic = run["profile"] == "parabolic"
     rows = [
         Row("grains", run["grains"], "", None, 3e7, "what a restart file holds"),
         Row("diameter d", d, "length"),
         Row("tau = sqrt(d/g)", tau, time),
-        *_sizes(run, d),
-        _outlet(min(2 * min(outlet["half_widths"]) / d for outlet in run["outlets"])),
+        *sizes(run, d),
+        outlet(min(2 * min(one["half_widths"]) / d for one in run["outlets"])),
         Row("radius of spots R_s", run["radius"] / d, "d", *((3.4, 4.1) if parabolic else (2.5, 3.03)), CALIBRATED),
         Row("volume of a spot V_s", run["spot_volume"] / grain, "grains", 0.1, 0.21, CALIBRATED),
         Row("grains in a spot", run["enclosed"] / grain, "", None, None, "at a packing fraction of 0.58"),
         Row("diffusion length b_s", run["diffusion"] / d, "d", 1.1, 1.6, CALIBRATED),
         Row("speed v_s", run["speed"] * tau / d, "d/tau", 4, 10, CALIBRATED + "; else g or the units are others"),
-        *_critical(run),
+        *critical(run),
         Row("dilation c_0", run["dilation"], "", 0, 0, "0: all spots climb at v_s"),
         Row("outflow", outflow, f"grains/{time}", None, None, "births x V_s; with *injection* 2 to 6 % less leave"),
         Row("outflow", outflow * tau, "grains/tau", None, None, "an input: nothing here checks it"),
-        *[Row(f"  through outlet {k}", outlet["outflow"] * tau, "grains/tau") for k, outlet in enumerate(run["outlets"], 1)
+        *[Row(f"  through outlet {k}", one["outflow"] * tau, "grains/tau") for k, one in enumerate(run["outlets"], 1)
           if len(run["outlets"]) > 1],
         _emptied(run, outflow * tau),
         Row("length of the run", end / tau, "tau", None, None, f"{run['steps']} steps of {run['timestep'] / tau:.3g} tau"),
@@ -87,15 +61,6 @@ def numbers(run, tau):
     return rows + ([] if run["time_ordered"] else _cost(run, end, seconds))
 
 
-def _outlet(width):
-    """width : d"""
-    low, calibrated, high = OUTLETS
-    note = "calibrations and DEM; below 6, DEM may clog"
-    if calibrated * (1 + LOOSE) < width <= high * (1 + LOOSE):
-        note = f"compared with DEM; calibrations have {low:g} to {calibrated:g}"
-    return Row("narrowest outlet", width, "d", low, high, note, LOOSE)
-
-
 def _emptied(run, outflow):
     """outflow : grains a tau"""
     taken = run["grains"] / outflow
@@ -104,34 +69,12 @@ def _emptied(run, outflow):
     return Row("empty after", taken, "tau", None, None, "at this outflow")
 
 
-def _is_mixture(run):
-    return run.get("largest", 1) > EQUAL * run.get("smallest", 1)  # which older programs don't tell
-
-
-def _sizes(run, d):
-    if not _is_mixture(run):
-        return []
-    ratio = run["largest"] / run["smallest"]
-    return [Row("largest over smallest grain", ratio, "", None, 2, "two sizes, compared with DEM", LOOSE),
-            Row("smallest grain", run["smallest"] / d, "d", SIZES[0], None, "examples/bidisperse", LOOSE),
-            Row("largest grain", run["largest"] / d, "d", None, SIZES[1], "examples/bidisperse", LOOSE)]
-
-
-def _critical(run):
-    """phi_c, where the program tells it; 0 switches the closure off."""
-    if "critical" not in run:
-        return []
-    note = "equal glass beads have 0.62" + ("; of mixtures: examples/bidisperse" if _is_mixture(run) else "")
-    note = note if run["critical"] else "0: off; beds flow as dense as they are"
-    return [Row("critical fraction phi_c", run["critical"], "", None, None, note)]
-
-
 def _cost(run, end, seconds):
     """Processor time, where a move costs about the same: not in the order of time."""
     per_time = MOVE * run["moves_per_time"]
     found = [Row("processor time", per_time, "s/s", None, None, "estimate, a simulated second of a full silo")] if seconds else []
     less = "" if run.get("recirculates") else "; less as the silo empties"
-    less += "; sizes cost up to 2.6 times as much" if _is_mixture(run) else ""
+    less += "; sizes cost up to 2.6 times as much" if is_mixture(run) else ""
     return found + [Row("processor time", per_time * end, "s", None, None, "estimate, the run" + less)]
 
 
