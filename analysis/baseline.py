@@ -17,6 +17,7 @@ import numpy as np  # noqa: E402  (only after the check above)
 from spot_analysis.base.errors import AnalysisError  # noqa: E402
 from spot_analysis.commands import command_line  # noqa: E402
 from spot_analysis.reading.dump import read_frames  # noqa: E402
+from spot_analysis.reading.json_object import FORMAT  # noqa: E402
 from spot_analysis.reading.scene import PERIOD_KEY  # noqa: E402
 from spot_analysis.statistics.snapshot import LAG_TAU  # noqa: E402
 
@@ -91,7 +92,7 @@ def write_baseline(folder, model, packing, scene, times, outflow, diffusion=DIFF
         raise AnalysisError("the packing: no grain in |x| < 15 d, 15 d < z < 45 d, whose density makes the outflow a flux")
     os.makedirs(folder, exist_ok=True)
     with open(os.path.join(folder, "scene.json"), "w", encoding="utf-8") as handle:
-        json.dump({"program": f"baseline: {model}", "diameter": 1.0, "gravity": 1.0, "timestep": TIMESTEP,
+        json.dump({"format": FORMAT, "program": f"baseline: {model}", "diameter": 1.0, "gravity": 1.0, "timestep": TIMESTEP,
                    "half_width_x": container.half_width, PERIOD_KEY if container.periodic else "half_depth_y": container.half_depth,
                    "orifice_radius": container.orifice_radius}, handle)
     flux = outflow / max(slab.sum(), 1) * 30 * 30  # over the depth; the density is that of the slab

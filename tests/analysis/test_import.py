@@ -19,6 +19,7 @@ from spot_analysis.importing.turning import direction, turned
 from spot_analysis.reading.packing_file import read_packing
 
 EXAMPLES = ANALYSIS.parent / "examples"
+VERSION = (ANALYSIS.parent / "VERSION").read_text().strip()
 HOPPER, D = EXAMPLES / "own-hopper" / "packing.data.gz", 0.003
 CONE = "--cone 0 0 0.012 0.03 0.045 --orifice 0.012".split()
 TEN = np.array([[x, y, z] for x in (-1.5, 0, 1.5) for y in (-1.5, 0, 1.5) for z in (0.5,)] + [[0.2, 0.1, 1.75]])
@@ -87,6 +88,7 @@ def test_every_format_is_the_same_packing(tmp_path, name):
     assert np.array_equal(ids, range(1, 11)) and diameter == 1
     assert density == (2600 if name.startswith(("lammps", "granular", "images")) else 2500)
     assert np.allclose(positions, TEN, rtol=0, atol=1e-9)
+    assert deck.startswith(f"# Made by spot-import {VERSION} from {name}: box.\n")
     assert "box -3 3 -3 3 &\n" in deck and "orifice 0 0 0 2 &\n" in deck and "beverloo ${g}" in deck
 
 

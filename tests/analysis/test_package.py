@@ -75,7 +75,8 @@ def test_commands(installed, tmp_path):
     (tmp_path / "beads.txt").write_text("0 0 0.5 0.5\n0 1 0.5 0.5\n")
     words = [tmp_path / "beads.txt", *"--box -2 2 -2 2 --orifice 1 --lammps-files".split(), SOURCES / "lammps-package", "-o", tmp_path / "own"]
     assert "2 grains of 1 m" in run(installed / "spot-import", *words)
-    assert f"include   {SOURCES}/lammps-package/glass-beads.lmp" in (tmp_path / "own" / "in.spot").read_text()
+    deck = (tmp_path / "own" / "in.spot").read_text()
+    assert f"include   {SOURCES}/lammps-package/glass-beads.lmp" in deck and deck.startswith(f"# Made by spot-import {VERSION} from ")
     absent = subprocess.run([installed / "spot-check", tmp_path / "absent"], capture_output=True, text=True)
     assert absent.returncode == 1 and absent.stderr == f"error: {tmp_path / 'absent'}: no such file\n"
     refused = subprocess.run([installed / "spot-calibrate", tmp_path / "a.npz"], capture_output=True, text=True)

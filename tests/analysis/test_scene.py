@@ -63,6 +63,15 @@ def test_bad_file(tmp_path, text):
         load_scene(write(tmp_path, text))
 
 
+def test_format(tmp_path):
+    """A file without one has the first."""
+    assert load_scene(write(tmp_path, {"format": 1, **SCENE})) == load_scene(write(tmp_path, SCENE))
+    for form in (2, 0, "1", True, None):
+        with pytest.raises(SceneError, match=f"scene.json: 'format' is {json.dumps(form)}, but 1 is the newest") as error:
+            load_scene(write(tmp_path, {**SCENE, "format": form}))
+        assert "\n" not in str(error.value)
+
+
 @pytest.mark.parametrize("key", ["shape", "half_width", "Diameter", ""])
 def test_unknown_key_is_named_with_those_that_are_allowed(tmp_path, key):
     with pytest.raises(SceneError, match=f"scene.json: unknown scene key '{key}'; allowed are {', '.join(KEYS)}$"):

@@ -42,7 +42,7 @@ def test_the_scene_tells_the_hopper(hopper):
     assert scene["cone_height"] == pytest.approx(4 * DIAMETER)
     assert scene["cylinder_radius"] == pytest.approx(8 * DIAMETER)
     assert scene["orifice_radius"] == pytest.approx(4 * DIAMETER)
-    assert scene["cone_angle"] == 45 and scene["grains"] == 800
+    assert scene["format"] == 1 and scene["cone_angle"] == 45 and scene["grains"] == 800
 
 
 @pytest.mark.parametrize("deck, change, said", [

@@ -118,7 +118,7 @@ def test_pour_goes_on_as_another_pour(cut_short):
 @pytest.mark.parametrize("folder, step", [("pour", 2), ("drain", 2)])
 def test_scene(silo, folder, step):
     scene = json.loads((silo[0] / folder / "scene.json").read_text())
-    assert scene == pytest.approx({"program": "LIGGGHTS", "diameter": DIAMETER, "gravity": GRAVITY, "timestep": step * 1e-4 * TAU,
+    assert scene == pytest.approx({"format": 1, "program": "LIGGGHTS", "diameter": DIAMETER, "gravity": GRAVITY, "timestep": step * 1e-4 * TAU,
                                    "half_width_x": WALLS[0], "half_depth_y": WALLS[1], "orifice_radius": 4 * DIAMETER, "orifices": 1, "slot": False,
                                    "grains": 600})
 

@@ -224,6 +224,7 @@ def scene(folder, name="scene.json"):
 def test_the_scene_is_that_of_the_analysis(tmp_path):
     """On ranks, too; the second run has fewer grains, but the scene is that of the start."""
     run_ok(deck(fix=FIX + " scene scene.json 9.75", run="run 30\nrun 10"), tmp_path, launcher=on_ranks(2))
+    assert scene(tmp_path)["format"] == 1
     found = load_scene(str(tmp_path))
     assert (found.diameter, found.gravity, found.timestep) == (1, 9.75, 0.1)
     assert (found.half_width_x, found.half_depth_y, found.orifice_radius) == (HALF_WIDTH, HALF_DEPTH, ORIFICE)

@@ -6,11 +6,12 @@ import os
 import numpy as np
 
 from ..base.errors import AnalysisError
+from ..base.version import version
 from .walls import fix_words, number, words
 
 ROOM_BELOW, ROOM_ABOVE, ROOM_BESIDE = 10, 5, 1  # d, of the simulation box beyond outlet, grains and walls
 ROOM_FOR_WALLS = 10  # d beside grains, where nobody has said how far away walls are
-HEAD = """# Made by spot-import from {source}: {walls}.
+HEAD = """# Made by spot-import {version} from {source}: {walls}.
 variable  d equal {diameter}              # grain diameter{unit}
 variable  g equal {gravity}
 variable  tau equal sqrt(v_d/v_g)
@@ -87,7 +88,7 @@ def deck(source, data, positions, diameter, walls, wall_words, orifice, outflow,
     if outflow:
         time = "second" if si else "unit of time"
         rate, measured = "outflow ${F}", f"variable  F equal {number(outflow)}              # grains that leave in a {time}\n"
-    return HEAD.format(source=os.path.basename(source), walls=walls.name if walls else "walls as given", diameter=number(diameter),
+    return HEAD.format(version=version(), source=os.path.basename(source), walls=walls.name if walls else "walls as given", diameter=number(diameter),
                        unit=", m" if si else "", gravity=number(gravity), outflow=measured, units="si" if si else "lj", folder=folder,
                        data=data, fix=wall_words or fix_words(walls, top_of(positions, diameter)), orifice=words(*orifice), rate=rate,
                        steps=steps)
