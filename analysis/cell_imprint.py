@@ -9,8 +9,9 @@ from spot_analysis.base.interpreter import require_packages
 
 require_packages("numpy", "scipy", "zstandard")
 
-from spot_analysis.base.progress import Progress  # noqa: E402  (only after the check above)
+from spot_analysis.base.progress import Progress, share_of  # noqa: E402  (only after the check above)
 from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.dump import find_dumps  # noqa: E402
 from spot_analysis.reading.scene import load_scene  # noqa: E402
 from spot_analysis.statistics import cell_imprint, fold  # noqa: E402
 from spot_analysis.statistics.history import History  # noqa: E402
@@ -32,7 +33,7 @@ def measure(options):
     measurement = None
     for source in options.dumps:
         scene, progress, history = load_scene(source), Progress(source), History(LAG_TAU)
-        container = scene.container()
+        container, files = scene.container(), len(find_dumps(source))
         measurement = measurement or cell_imprint.Measurement(container, (cell_imprint.EDGE, *CONTROLS))
         for number, frame in enumerate(command_line.frames_of_equal_grains(source, scene)):
             time = scene.time(frame.timestep)
@@ -42,7 +43,7 @@ def measure(options):
             if options.start - TIME_TOLERANCE <= time <= options.end + TIME_TOLERANCE:
                 history.add(snapshot)
                 measurement.add(snapshot, history.earlier(LAG_TAU))
-                progress(f"t = {time:g} tau")
+                progress(f"t = {time:g} tau", share_of(number + 1, files))
     return measurement.imprints()
 
 

@@ -13,8 +13,9 @@ require_packages("numpy", "scipy", "zstandard")
 import numpy as np  # noqa: E402  (only after the check above)
 
 from spot_analysis.base.errors import AnalysisError  # noqa: E402
-from spot_analysis.base.progress import Progress  # noqa: E402
+from spot_analysis.base.progress import Progress, share_of  # noqa: E402
 from spot_analysis.commands import command_line  # noqa: E402
+from spot_analysis.reading.dump import find_dumps  # noqa: E402
 from spot_analysis.statistics import flow_law, flow_places, fraction_law, widening  # noqa: E402
 from spot_analysis.statistics.flow_sums import Measurement  # noqa: E402
 from spot_analysis.statistics.interval import STEADY_FROM  # noqa: E402
@@ -56,10 +57,10 @@ class Run:
     def __init__(self, name, source, intervals, scene):
         self.name, self.container = name, scene.container()
         measured = Measurement(self.container, intervals)
-        progress = Progress(source)
-        for frame in command_line.frames_of_equal_grains(source, scene):
+        progress, files = Progress(source), len(find_dumps(source))
+        for number, frame in enumerate(command_line.frames_of_equal_grains(source, scene), 1):
             measured.add(Snapshot(scene.time(frame.timestep), frame.ids, scene.positions(frame.positions), self.container, None))
-            progress(f"t = {scene.time(frame.timestep):g} tau")
+            progress(f"t = {scene.time(frame.timestep):g} tau", share_of(number, files))
         self.intervals = {number: span for number, span in enumerate(measured.intervals) if measured.pairs(number)}
         if not self.intervals:
             raise AnalysisError(f"{source}: no two snapshots of an interval are {LAG_TAU:g} tau apart")

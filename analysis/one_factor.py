@@ -13,6 +13,7 @@ require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import numpy as np  # noqa: E402  (only after the check above)
 
+from spot_analysis.base.progress import counted  # noqa: E402
 from spot_analysis.commands import command_line, deck_run  # noqa: E402
 from spot_analysis.report import comparison  # noqa: E402
 from spot_analysis.statistics import (bond_angles, bond_order, counts, front, packing, particle_diffusion,  # noqa: E402
@@ -124,8 +125,10 @@ def main():
     os.makedirs(options.output, exist_ok=True)
     dem = run_statistics.load(options.dem)
     headings = [heading for heading, _ in QUANTITIES.values()]
+    tasks = [(choice, seed) for choice in options.only for seed in options.seeds]
+    runs = counted((run_choice(options, *task) for task in tasks), len(tasks), "runs")
     for number, choice in enumerate(options.only):
-        found = [numbers(dem, run_choice(options, choice, seed)) for seed in options.seeds]
+        found = [numbers(dem, next(runs)) for _ in options.seeds]
         if number == 0:
             print("| | " + " | ".join(headings) + " |\n" + "|---" * (len(headings) + 1) + "|")
             print("| DEM | " + " | ".join(text([found[0][name][0]], factor) for name, (_, factor) in QUANTITIES.items()) + " |")

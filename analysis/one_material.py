@@ -15,6 +15,7 @@ require_packages("numpy", "scipy", "matplotlib", "zstandard")
 
 import baseline  # noqa: E402  (only after the check above)
 from spot_analysis.base.errors import AnalysisError  # noqa: E402
+from spot_analysis.base.progress import counted  # noqa: E402
 from spot_analysis.commands import command_line, deck_run  # noqa: E402
 from spot_analysis.reading.dump import read_frames  # noqa: E402
 from spot_analysis.reading.scene import load_scene  # noqa: E402
@@ -196,10 +197,10 @@ def run_all(options, dems):
     """reference -> RunStatistics of the spot model, a seed each."""
     tasks = [(name, seed, dems[name][0].times, options) for name in options.only for seed in options.seeds]
     if options.jobs == 1:
-        runs = map(run_spot, tasks)
+        runs = counted(map(run_spot, tasks), len(tasks), "runs")
     else:
         with ProcessPoolExecutor(options.jobs) as pool:
-            runs = list(pool.map(run_spot, tasks))
+            runs = list(counted(pool.map(run_spot, tasks), len(tasks), "runs"))
     found = {}
     for (name, *_), run in zip(tasks, runs):
         found.setdefault(name, []).append(run)

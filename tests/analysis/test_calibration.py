@@ -110,9 +110,9 @@ def test_kicks_give_the_influence(result):
     assert measured["grains_in_spot"]["value"] == pytest.approx(DENSITY * sphere * 0.957, rel=0.03)
 
 
-def test_progress_and_table(result):
+def test_table(result):
     done = result[0]
-    assert "17 snapshots measured" in done.stderr and "40 to 70 tau, 16 snapshots" in done.stdout
+    assert done.stderr == "" and "40 to 70 tau, 16 snapshots" in done.stdout
     for symbol in ("R_s", "w", "b_s", "v_s", "nu_s"):
         assert f"\n{symbol} " in done.stdout
 

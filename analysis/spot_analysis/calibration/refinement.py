@@ -11,6 +11,7 @@ from ..reading.log import reason_of_failure
 from ..reading.scene import load_scene
 from ..statistics.interval import STEADY_FROM
 from ..statistics.measuring import measure_dumps
+from ..statistics.snapshot import LAG_TAU
 from .estimate import CalibrationError
 from .lammps_variables import IN_THE_DECK, lammps_variables
 from .measurement import measure
@@ -80,7 +81,8 @@ def run_deck(deck, lmp, variables, folder, duration, words, progress):
         with open(log, "w", encoding="utf-8") as output, subprocess.Popen(
                 command, cwd=os.path.dirname(os.path.abspath(deck)), stdout=output, stderr=subprocess.STDOUT) as process:
             while _runs(process):
-                progress(f"lmp has written {len(os.listdir(dumps)) if os.path.isdir(dumps) else 0} snapshots")
+                written = len(os.listdir(dumps)) if os.path.isdir(dumps) else 0
+                progress(f"lmp has written {written} snapshots", min(written * LAG_TAU / duration, 1.0))
     except OSError as error:
         raise CalibrationError(f"cannot run {lmp}: {error.strerror}") from error
     if process.returncode != 0:

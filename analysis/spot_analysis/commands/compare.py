@@ -50,9 +50,7 @@ def compare():
     interval = choose_interval(times, options.start, options.end)
     views = {"DEM": IntervalView(dem, dem_common, interval),
              "spot": IntervalView(spot, spot_common, interval)}
-    progress = Progress("report")
-    rows = comparison.compare(views["DEM"], views["spot"], progress)
-    progress("judging families")
+    rows = comparison.compare(views["DEM"], views["spot"], Progress("numbers"))
     windows = criteria.windows_of(times[-1])
     verdicts = families.judge([dem], [spot], windows)
     by_family = family_table.rows({"spot / DEM": verdicts})
@@ -68,7 +66,7 @@ def compare():
 
     os.makedirs(options.output, exist_ok=True)
     write_json(os.path.join(options.output, "comparison.json"), rows, views, verdicts)
-    pictures = draw_pictures(options.output, views, progress)
+    pictures = draw_pictures(options.output, views, Progress("pictures"))
     page = os.path.join(options.output, "report.html")
     write_html(page, rows, views, pictures, f"<p>{family_table.describe(windows)}</p>\n{family_table.as_html(by_family)}")
     print(f"\nreport: {page}")

@@ -105,7 +105,7 @@ def import_packing():
     if walls:
         check_outlet(walls, orifice, positions, diameters)
         check_places(walls, positions, diameters)
-    relaxed = relax(positions, diameters, options.overlap, walls, Progress("import", terminal_only=True))
+    relaxed = relax(positions, diameters, options.overlap, walls, Progress("import"))
     print(f"overlaps: the largest was {relaxed.before:.4f} d and is {relaxed.after:.4f} d, after {relaxed.sweeps} sweeps; no grain went "
           f"farther than {relaxed.moved:.4f} d")
     save(options, grains, relaxed.positions, diameters, walls, orifice, folder)

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..base.errors import AnalysisError
-from ..base.progress import Progress
+from ..base.progress import Progress, share_of
+from ..reading.dump import find_dumps
 from ..rendering import files
 from ..rendering.colouring import COLOURINGS
 from ..rendering.drawing import draw, view_of
@@ -75,14 +76,15 @@ def write_vtk(options, progress):
     label, path = split_word(options.runs[0])
     run = Run(label, path, options.diameter, command_line.print_warning)
     colouring, wanted, found = COLOURINGS[options.colour](run, options.layer), wanted_times(options), []
-    for grains in run.snapshots():
+    files = len(find_dumps(path))
+    for seen, grains in enumerate(run.snapshots(), 1):
         colouring.see(grains)
         if wanted(grains.time):
             if len(found) % options.every == 0:
                 number = len(found) // options.every
                 values = colouring.values(grains, np.ones(len(grains.ids), dtype=bool))
                 write_points(f"{options.output[:-len('.vtk')]}.{number:04}.vtk", grains, values, options.colour)
-                progress(f"{number + 1} files written")
+                progress(f"{number + 1} files written", share_of(seen, files))
             found.append(grains.time)
     if not found:
         raise AnalysisError(f"{path}: no snapshot at a time that was asked for")
@@ -92,18 +94,17 @@ def write_vtk(options, progress):
 def render():
     options = parse_arguments()
     check(options)
-    progress = Progress("render", terminal_only=True)
     if options.output and options.output.endswith(".vtk"):
-        write_vtk(options, progress)
+        write_vtk(options, Progress("render"))
         return
-    reels = [open_reel(word, options, progress) for word in options.runs]
+    reels = [open_reel(word, options, Progress("render")) for word in options.runs]
     rows = at_common_times(reels)
     check_times(options.times, [row[0].time for row in rows])
     rows = rows[::options.every]
     if options.keep:
         save_pictures(options.keep, replace(reels[0], pictures=[row[0] for row in rows]))
     if options.output:
-        write(options, reels, rows, progress)
+        write(options, reels, rows, Progress("render"))
 
 
 def main():

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..base.errors import AnalysisError
+from ..base.progress import share_of
+from ..reading.dump import find_dumps
 from ..statistics.snapshot import TIME_TOLERANCE
 
 FRONT = 1.0  # d; depth of the layer at the front wall
@@ -50,7 +52,8 @@ def take_pictures(run, colour, colouring, slab, wanted, progress):
     """
     pictures, seen = [], []
     asked = slab
-    for grains in run.snapshots():
+    files = len(find_dumps(run.path))
+    for number, grains in enumerate(run.snapshots(), 1):
         colouring.see(grains)
         if slab is None and len(grains.ids):
             slab = _default_slab(run, grains)
@@ -65,7 +68,7 @@ def take_pictures(run, colour, colouring, slab, wanted, progress):
         spots = grains.spots if slab is None else grains.spots[(grains.spots[:, 1] >= slab[0]) & (grains.spots[:, 1] < slab[1])]
         pictures.append(Picture(grains.time, x[far_first], z[far_first], grains.diameters[chosen][far_first], values[far_first],
                                 spots[:, [0, 2]]))
-        progress(f"{run.label}: {len(pictures)} snapshots read")
+        progress(f"{run.label}: {len(pictures)} snapshots read", share_of(number, files))
     if asked is not None and seen and not any(len(picture.x) for picture in pictures):
         raise AnalysisError(f"{run.path}: no grain between y = {asked[0]:g} and {asked[1]:g} d (--slice); they are at "
                             f"{min(seen):.4g} to {max(seen):.4g} d")

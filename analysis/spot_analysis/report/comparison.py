@@ -71,13 +71,14 @@ def left_out_of(run):
             for name, value in concept.quantities(view).items() if value.value is None}
 
 
-def compare(dem_view, spot_view, progress=lambda text: None, sections=SECTIONS):
+def compare(dem_view, spot_view, progress=lambda text, share: None, sections=SECTIONS):
     """The rows of the comparison; sections : name -> concepts."""
     steady = dem_view.interval.is_steady()
-    rows = []
+    rows, done, total = [], 0, sum(map(len, sections.values()))
     for section, concepts in sections.items():
         for concept in concepts:
-            progress(f"estimating {concept.__name__.rpartition('.')[2]}")
+            progress(f"estimating {concept.__name__.rpartition('.')[2]}", done / total)
+            done += 1
             dem, spot = concept.quantities(dem_view), concept.quantities(spot_view)
             for name in dem:
                 lacking = {run: view for run, view, value in (("DEM", dem_view, dem[name]), ("spot", spot_view, spot[name]))

@@ -63,8 +63,8 @@ FIGURES = {name: figure for section in SECTIONS.values() for name, figure in sec
 def draw_pictures(folder, views, progress):
     """Draw every figure into ``folder``; returns name -> path of those that could be drawn."""
     paths = {}
-    for name, (draw, _) in FIGURES.items():
-        progress(f"drawing {name}")
+    for number, (name, (draw, _)) in enumerate(FIGURES.items()):
+        progress(f"drawing {name}", number / len(FIGURES))
         figure = draw(views)
         if figure is not None:
             paths[name] = os.path.join(folder, f"{name}.png")

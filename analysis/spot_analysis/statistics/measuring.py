@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ..base.errors import DumpError
-from ..base.progress import Progress
+from ..base.progress import Progress, share_of
 from ..reading.dump import find_dumps, read_frames
 from . import flow, neighbours, radial_distribution, structure
 from .front_layer import FrontLayer
@@ -43,7 +43,7 @@ def measure_dumps(source, scene, label="dumps", provenance=None, warn=print, con
             continue
         recorder.add(frame)
         total = f" of {files}" if files > 1 else ""
-        progress(f"{number} snapshots{total}, t = {recorder.times[-1]:g} tau")
+        progress(f"{number} snapshots{total}, t = {recorder.times[-1]:g} tau", share_of(number, files))
     if not recorder.times:
         cause = (f"all {early} snapshots are from before the orifice opens, at {scene.opening_time:g} (opening_time)"
                  if early == number else "no snapshot is at one of the times that are asked for")
