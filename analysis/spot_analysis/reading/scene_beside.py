@@ -21,7 +21,11 @@ def scene_beside(source):
     path = path_beside(source)
     if not os.path.exists(path):
         return None, None
-    values = read_values(path)
+    return scene_and_walls(read_values(path), source, path)
+
+
+def scene_and_walls(values, source, path):
+    """The same of key -> value; source, path : for errors."""
     is_box = any(key in values for key in BOX_KEYS)
     hopper = _hopper(values, path)
     if not is_box:
