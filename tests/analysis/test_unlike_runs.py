@@ -105,7 +105,7 @@ def test_snapshots_without_grains_are_measured(full, tmp_path, case):
     curves.as_lists(views)
     if case in ("later half", "all"):
         assert rows["surface_height_axis"].spot is None
-        assert figures.draw_pictures(tmp_path, views, lambda text: None)
+        assert figures.draw_pictures(tmp_path, views, lambda text, share: None)
     if case == "all":
         assert rows["packing_fraction"].left_out == rows["largest_overlap"].left_out == "spot: there are no grains"
         assert rows["crystal_share"].left_out == "spot: no snapshot fills z = 15 d to 50 d"
