@@ -45,11 +45,27 @@ def test_the_scene_tells_the_hopper(hopper):
     assert scene["format"] == 1 and scene["cone_angle"] == 45 and scene["grains"] == 800
 
 
+def test_a_packing_goes_on_over_a_flat_base(hopper, tmp_path):
+    """The grains of the cone, on a plane with a hole: from a data file."""
+    flat = {**HOPPER, "angle": 90, "rest": 0, "out": tmp_path}
+    said = run_ok("hopper", "in.from_data", data=hopper / "packed.data", settle=0.2, **flat)
+    assert "800 grains of" in said
+    run_ok("hopper", "in.drain", time=4 * TAU, **flat)
+    [(_, last)] = read_dump(tmp_path / "drain" / "drain.20000.dump")
+    radius, z = np.hypot(last["x"], last["y"]) / DIAMETER, last["z"] / DIAMETER
+    assert 400 < np.count_nonzero(z > 0) < 800
+    # Nobody goes through the base beside the hole: what left is still below it, within 45 degrees of its rim.
+    assert (z[(radius > 4.5) & (z > -1)] > 0.4).all() and (radius < 8).all()
+    assert json.loads((tmp_path / "drain" / "scene.json").read_text())["cone_height"] == pytest.approx(0, abs=1e-12)
+
+
 @pytest.mark.parametrize("deck, change, said", [
-    ("in.pour", {"angle": 90}, "angle is 90 degrees"),
+    ("in.pour", {"angle": 91}, "angle is 91 degrees"),
     ("in.pour", {"orifice": 16}, "orifice is 16 d"),
     ("in.pour", {"grains": 20000}, "raise pour_height"),
     ("in.pour", {"flux": 40000}, "more than 0.2"),
+    ("in.from_data", {"settle": -1}, "settle is -1 tau"),
+    ("in.from_data", {"data": "none.data"}, "no data file none.data"),
     ("in.drain", {}, "run in.pour first")])
 def test_mistakes_are_named(tmp_path, deck, change, said):
     done = run("hopper", deck, out=tmp_path, **{**HOPPER, **change})
