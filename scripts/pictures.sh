@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 
-all=(silo own-hopper hoppers benchmark-silo bidisperse periodic-slot two-outlets pebble-bed python)
+all=(silo own-hopper hoppers half-full benchmark-silo bidisperse periodic-slot two-outlets pebble-bed python)
 case "${1:-}" in
   -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
@@ -55,6 +55,13 @@ pictures_of_hoppers() {
   done
   analysis hopper $here/dem-30.json $runs/30-{1,2,3} --plot $here/profiles-30.png
   analysis hopper $here/dem-60.json $runs/60-{1,2,3} --plot $here/profiles-60.png
+}
+
+pictures_of_half-full() {
+  local runs=results/pictures/half-full here=examples/half-full
+  for seed in 1 2 3; do drain half-full 90-$seed -var outflow 56.1 -var seed $seed; done
+  analysis round_heap $here/dem-90.json $runs/90-{1,2,3} --plot $here/drainage-90.png
+  render DEM=$here/dem-90.npz spot=$runs/90-1 --slice -1 1 --layer 3 --times 20 60 150 --height 260 -o $here/flat.png
 }
 
 pictures_of_benchmark-silo() {

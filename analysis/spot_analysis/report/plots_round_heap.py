@@ -11,7 +11,8 @@ from .plot_style import STYLE
 
 def _rows(found, pattern):
     """Columns of (number in the name, value, error or 0), in the order of the numbers."""
-    rows = [(float(match[1]), value[0], value[1] if math.isfinite(value[1]) else 0.0) for name, value in found.items() if (match := re.fullmatch(pattern, name))]
+    rows = [(float(match[1]), value, error if math.isfinite(error) else 0.0)
+            for name, (value, error) in found.items() if (match := re.fullmatch(pattern, name))]
     return list(zip(*sorted(rows)))
 
 

@@ -99,8 +99,10 @@ def measure(frames, scene, start, end):
     calm = runs[int(np.argmin(np.abs(times - (times[-1] - AFTER))))]
     found["left_in_last_20tau"] = [float(left(calm, runs[-1])), math.nan]
     found["crept_in_last_20tau"] = [crept(calm, runs[-1]), math.nan]
-    for name, one in [*((f"{time:g}tau", runs[int(np.argmin(np.abs(times - time)))]) for time in PROFILES), ("end", runs[-1])]:
-        found.update(_surface_of(one, scene, name))
+    for time in PROFILES:
+        if time <= times[-1] + 1e-9:
+            found.update(_surface_of(runs[int(np.argmin(np.abs(times - time)))], scene, f"{time:g}tau"))
+    found.update(_surface_of(runs[-1], scene, "end"))
     return found
 
 
