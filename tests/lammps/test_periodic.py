@@ -177,7 +177,7 @@ def test_where_the_cell_begins_is_of_no_account(tmp_path, more):
 @pytest.mark.parametrize("axes, boundary, box, said", [
     ("y", "f f f", BOX, ["NULL NULL for walls along y", "not periodic there", "'boundary p'"]),
     ("x", "p p f", BOX, ["'box' has walls along y", "simulation box is periodic", "NULL NULL"]),
-    ("y", "f p f", (*BOX[:2], -5.5, 5.5, *BOX[4:]), ["period along y is 11 ", "at least 11.06", "twice the spot radius"]),
+    ("y", "f p f", (*BOX[:2], -5.5, 5.5, *BOX[4:]), ["period along y is 11 ", "at least 11.06", "twice the sum of the spot radius"]),
     ("xy", "p p f", (-5.0, 5.0, *BOX[2:]), ["period along x is 10 ", "at least 11.06"]),
 ])
 def test_periods_and_walls(tmp_path, axes, boundary, box, said):

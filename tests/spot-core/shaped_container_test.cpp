@@ -16,6 +16,7 @@
 #include "spot/drivers/time_ordered_drainage.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
 #include "spot/geometry/shapes.hpp"
+#include "spot/geometry/slot.hpp"
 
 namespace {
 
@@ -181,7 +182,8 @@ TEST(ShapedContainerUnit, OrificesThatDoNotOpenAreNamed) {
   EXPECT_THAT(scenes::text_of<InvalidContainer>([] {
                 ShapedContainer(hopper(), Orifice{{0.5, 0.0, 0.0}, 4.0}, buffers);
               }),
-              AllOf(HasSubstr("orifice of radius 4 at (0.5, 0, 0)"), HasSubstr("does not open")));
+              AllOf(HasSubstr("orifice of radius 4 at (0.5, 0, 0)"), HasSubstr("does not open"),
+                    HasSubstr("walls leave no inside")));
   EXPECT_THAT(scenes::text_of<InvalidContainer>([] {
                 ShapedContainer(hopper(), Orifice{{0.0, 0.0, 0.0}, -1.0}, buffers);
               }),
@@ -190,6 +192,22 @@ TEST(ShapedContainerUnit, OrificesThatDoNotOpenAreNamed) {
                 ShapedContainer(hopper(), orifice, SpotBuffers{-1.0, 0.0});
               }),
               AllOf(HasSubstr("buffer is -1"), HasSubstr("zero or positive")));
+}
+
+/// No spot would walk in them: each would go straight up.
+TEST(ShapedContainerUnit, BuffersAsWideAsHalfAnOutletAreNamed) {
+  for (const double side : {4.0, 4.5, 1e9})
+    EXPECT_THAT(scenes::text_of<InvalidContainer>([&] {
+                  ShapedContainer(hopper(), orifice, SpotBuffers{side, 2.6});
+                }),
+                AllOf(HasSubstr(spot::message("buffer of spots from side walls is ", side, " ")),
+                      HasSubstr("must be below 4,"), HasSubstr("orifice of radius 4")));
+  EXPECT_NO_THROW(ShapedContainer(hopper(), orifice, SpotBuffers{3.9, 2.6}));
+  const spot::Outlet slot({0.0, 0.0, 0.0}, std::make_shared<spot::Slot>(8.0, 6.0));
+  EXPECT_THAT(scenes::text_of<InvalidContainer>([&] {
+                ShapedContainer(endless_box(8.0, 5.0), slot, SpotBuffers{3.5, 2.6});
+              }),
+              AllOf(HasSubstr("must be below 3,"), HasSubstr("slot of 8 by 6")));
 }
 
 }  // namespace

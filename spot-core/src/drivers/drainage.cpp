@@ -73,8 +73,9 @@ Drainage::Drainage(const SpotParameters& spots, const RelaxationParameters& rela
   relaxation_.validate();
   require_steps(spots_, diameter);
   container_->require_entrance(spots.equivalent_radius());
-  container_->periodic().require_length(2.0 * (spots.radius + 2.0 * diameter),
-                                        "twice the spot radius and two diameters, so that no spot meets itself");
+  container_->periodic().require_length(
+      2.0 * (spots.radius + 2.0 * diameter),
+      "twice the sum of the spot radius and two diameters, so that no spot meets itself");
   const double base = container_->outlets().height();
   // A newborn spot is 2 R_s tall, and the middle of its first step is half a step higher.
   const double lowest_reached = base - 2.0 * spots.radius + 0.5 * spots.step_height;

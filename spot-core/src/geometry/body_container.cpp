@@ -4,12 +4,26 @@
 #include <algorithm>
 
 #include "geometry/cells_on_path.hpp"
+#include "spot/base/errors.hpp"
 
 namespace spot {
+
+namespace {
+
+/// Spots on their way in are between the walls that begin at the rim, in a hopper, or over the base around it.
+void require_room(const Outlet& outlet, double side_buffer) {
+  const double half = outlet.hole->widest_radius();
+  if (side_buffer < half) return;
+  throw InvalidContainer(message("buffer of spots from side walls is ", side_buffer, " but must be below ", half,
+                                 ", half the width of the ", outlet.name(), ": no spot fits into it"));
+}
+
+}  // namespace
 
 BodyContainer::BodyContainer(const Outlets& outlets, const SpotBuffers& buffers, const Periodic& periodic)
     : outlets_(outlets), periodic_(periodic), buffers_(buffers), base_(outlets) {
   outlets_.require_within(periodic_);
+  for (const Outlet& outlet : outlets_) require_room(outlet, buffers_.side);
 }
 
 std::optional<WallOnPath> BodyContainer::first_wall(const Vector3& from, const Vector3& to) const {

@@ -58,8 +58,8 @@ void ShapedContainer::require_mouth(const Outlet& outlet) const {
       const Vector3 place = outlet.hole->point(1e-6 * radius, share * share, static_cast<double>(line) / lines);
       const Vector3 at = outlet.centre + place + Vector3(0.0, 0.0, 1e-6 * radius);
       if (!contains(at))
-        throw InvalidContainer(message("the ", outlet.name(), " does not open into the container: at (", at.x(), ", ",
-                                       at.y(), ", ", at.z(), ") there is none"));
+        throw InvalidContainer(message("the ", outlet.name(), " does not open into the container: right above it, at (",
+                                       at.x(), ", ", at.y(), ", ", at.z(), "), the walls leave no inside"));
     }
 }
 

@@ -13,7 +13,8 @@ namespace spot {
 /// is no wall, and nothing passes that height beside them.
 class BodyContainer : public Container {
  public:
-  /// Where space repeats, so does the body. Throws InvalidContainer if an outlet reaches out of the cell.
+  /// Where space repeats, so does the body. Throws InvalidContainer, naming the outlet, if one reaches out of the cell,
+  /// or is no wider than spots keep from side walls.
   BodyContainer(const Outlets& outlets, const SpotBuffers& buffers, const Periodic& periodic = {});
 
   const Outlets& outlets() const override { return outlets_; }
