@@ -3,6 +3,7 @@
 // SPOT_COMMANDS=n tries n of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
@@ -31,11 +32,15 @@ const std::vector<std::string> valid = {
     "box -25 25 -4 4 orifice 0 0 0 4 speed 3.2 injection 380 volume 77 threads 2 steps together accuracy fast "
     "critical 0.58 1.5 dilatancy 0.1 spread 0.6 0.7 surface 3 nonaffine 0.1 0.5",
     "cylinder 0 0 10 orifice 1 -2 0 4 speed 3.2 injection 388 seed 7 accuracy exact overlap 0.1 average 10",
-    "region hopper orifice 0 0 0 4 radius 2.6 influence 2.5e-3 diffusion 1.25 dz 0.1 speed 3.2 injection 388 outlet -1 "
-    "relax every 10 strength full alpha 0.7 shell 2",
+    "region hopper orifice 0 0 0 4 profile uniform radius 2.6 influence 2.5e-3 diffusion 1.25 dz 0.1 speed 3.2 "
+    "injection 388 outlet -1 relax every 10 strength full alpha 0.7 shell 2",
     "box -5 5 -4 4 orifice 0 0 0 3.5 speed 3.2 injection 388 relax tol 2e-3 momentum 0.5 contact 1e-3 closing 4e-3 0.1 "
     "window 0.02 "
-    "buffer 0.5 0"};
+    "buffer 0.5 0",
+    "walls add cone z 0 0 4 12 0 14 walls add cylinder z 0 0 12 14 60 walls cut sphere 0 0 20 3 orifice 0 0 0 4 "
+    "speed 2.5 beverloo 1 0.58 1.4 1.03 hopper 24 30 scene scene.json 9.81 peratom yes recirculate region inlet",
+    "walls add block -12 12 -16 16 0 60 walls cut plane 4 0 0 14 0 -8 slot -6 0 0 8 32 slot 6 0 0 8 8 speed 2.5 "
+    "outflow 30 10 schedule 1 0 1 5 0.5 10 0 schedule 2 v_open persistence 0.4 dilation 0.03 recirculate 40"};
 
 const Words numbers = {"NULL",
                        "nan",
@@ -151,6 +156,31 @@ void expect_in_range(const SpotCommand& command) {
   EXPECT_TRUE(command.relaxation.tolerance > 0.0 && std::isfinite(command.relaxation.tolerance));
   EXPECT_GE(command.threads, 1);
   EXPECT_GE(command.average, 1);
+}
+
+/// As the parser names them.
+Words known_keywords() {
+  try {
+    parse_spot_command({"?"});
+  } catch (const spot::InvalidParameter& error) {
+    const std::string text = error.what(), before = "known are:";
+    if (text.find(before) != std::string::npos) return words_of(text.substr(text.find(before) + before.size()));
+  }
+  return {};
+}
+
+TEST(SpotCommandFuzz, EachKeywordStandsInAValidCommand) {
+  Words all;
+  for (const std::string& text : valid) {
+    SCOPED_TRACE(text);
+    EXPECT_NO_THROW(parse_spot_command(words_of(text)));
+    const Words words = words_of(text);
+    all.insert(all.end(), words.begin(), words.end());
+  }
+  const Words known = known_keywords();
+  EXPECT_GT(known.size(), 30u);
+  for (const std::string& keyword : known)
+    EXPECT_TRUE(std::find(all.begin(), all.end(), keyword) != all.end()) << "no command has '" << keyword << "'";
 }
 
 struct Counts {
