@@ -4,6 +4,7 @@
 //   stress-scenes N [FIRST]     the scenes FIRST (1) to FIRST + N - 1
 //
 // Ends with an error, naming the scene, if a grain or a spot is outside or lost, or the bits are not the same.
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <limits>
@@ -110,6 +111,8 @@ struct Scene {
     return std::make_unique<spot::WindowedDrainage>(spots, relaxation, limits, 0.02, workers, silo, 1.0, 100.0, grains);
   }
 
+  void draw_critical(Draws& draws);
+
   Shape shape;
   std::shared_ptr<const spot::Container> silo;
   spot::SpotParameters spots;
@@ -170,10 +173,25 @@ Scene::Scene(std::uint64_t seed)
   if (draws.below(2) == 0 && spots.fixed_volume > 0.0) spots.spread = 0.6, spots.wall_shear = 0.7;
   relaxation.momentum = 0.6;
   relaxation.tolerance = 2e-3;
+  // Drawn last, so that all else in a scene is as it was before.
+  if (draws.below(2) == 0 && spots.fixed_volume > 0.0) draw_critical(draws);
+  const double held = draws.below(3) == 0 ? 0.03 : 0.0;
+  for (spot::Grain& grain : grains) grain.held = draws.uniform(0.0, 1.0) < held;
+}
+
+/// The bed is looser than any that flows, which is refused: so it is too shallow to be checked.
+void Scene::draw_critical(Draws& draws) {
+  spots.critical_fraction = draws.uniform(0.5, 0.6);
+  spots.exchange_length = spots.step_height * draws.uniform(0.2, 5.0);
+  if (draws.below(2) == 0) spots.dilatancy = spots.radius * draws.uniform(0.02, 0.33);
+  const double top = 3.0 * spots.radius + 2.0;
+  grains.erase(
+      std::remove_if(grains.begin(), grains.end(), [top](const auto& grain) { return grain.position.z() > top; }),
+      grains.end());
 }
 
 struct Count {
-  std::size_t drained = 0, put_back = 0, moves = 0;
+  std::size_t drained = 0, put_back = 0, moves = 0, critical = 0, held = 0;
 };
 
 std::string wrong_spot(const spot::Drainage& drainage, const spot::Container& silo) {
@@ -226,6 +244,8 @@ int main(int argc, char** argv) {
     try {
       const Scene scene(seed);
       ++shapes[scene.shape.name];
+      count.critical += scene.spots.critical_fraction > 0.0;
+      count.held += std::any_of(scene.grains.begin(), scene.grains.end(), [](const auto& grain) { return grain.held; });
       what = drain(scene, count);
     } catch (const spot::CollapsedPacking&) {
       ++refused["collapsed packings"];
@@ -238,7 +258,8 @@ int main(int argc, char** argv) {
     std::cout << "scene " << seed << ": " << what << std::endl;
   }
   std::cout << end - first << " scenes, " << wrong << " wrong, " << count.drained << " grains drained, "
-            << count.put_back << " put back, " << count.moves << " moves\n";
+            << count.put_back << " put back, " << count.moves << " moves; " << count.critical << " with critical, "
+            << count.held << " with held grains\n";
   for (const auto& [name, n] : shapes) std::cout << "  " << n << " " << name << '\n';
   for (const auto& [name, n] : refused) std::cout << "  " << n << " " << name << '\n';
   return wrong == 0 ? 0 : 1;
