@@ -107,8 +107,9 @@ RegionParts::Part RegionParts::part_of(Region *region, Domain &domain) {
   constexpr std::array<const char *, 7> convex = {"block", "cone", "cylinder", "ellipsoid", "plane", "prism", "sphere"};
   if (std::find(convex.begin(), convex.end(), style) == convex.end())
     throw spot::InvalidContainer(spot::message("region '", region->id, "' is of style ", style,
-                                               ", which is not supported: use block, cone, cylinder, plane, prism, "
-                                               "sphere, and union and intersect of them"));
+                                               ", which is not supported, as no mesh is: write it as block, cone, "
+                                               "cylinder, ellipsoid, plane, prism, sphere, and union and intersect of "
+                                               "them, round parts as cones and cylinders, flat ones as planes"));
   shapes_.push_back(region);
   return made;
 }

@@ -103,12 +103,22 @@ BoundedSolid read_plane(Words& words) {
   return {spot::half_space(point, normal), -endless, endless};
 }
 
+/// What others have walls of triangles for.
+void refuse_mesh(const Words& words, bool add) {
+  for (const char* mesh : {"mesh", "stl", "tet"})
+    if (words.next_begins_with(mesh))
+      throw InvalidParameter(message("'walls ", add ? "add " : "cut ", mesh, "': there are no walls of triangles; ",
+                                     "write the inside as shapes: 'cylinder', 'cone' and 'sphere' where it is round, ",
+                                     "'block' where it is flat, 'walls cut plane' for a wall that leans"));
+}
+
 }  // namespace
 
 void ShapedWalls::read(Words& words) {
   using Reader = std::function<BoundedSolid(Words&)>;
   const std::size_t first = words.taken();
   const bool add = one_of<bool>(words, "walls", {{"add", true}, {"cut", false}});
+  refuse_mesh(words, add);
   const BoundedSolid shape = one_of<Reader>(words, add ? "walls add" : "walls cut",
                                             {{"block", read_block},
                                              {"cone", read_cone},

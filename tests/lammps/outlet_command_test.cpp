@@ -242,7 +242,11 @@ TEST(ShapedWalls, MistakesAreNamed) {
   const std::string outlet = "orifice 0 0 0 4 injection 300";
   EXPECT_THAT(error_of("walls", outlet), HasSubstr("'walls orifice' is not known"));
   EXPECT_THAT(error_of("walls add", outlet), AllOf(HasSubstr("'walls add orifice'"), HasSubstr("'block'")));
-  EXPECT_THAT(error_of("walls add mesh", outlet), AllOf(HasSubstr("'walls add mesh'"), HasSubstr("'cone'")));
+  EXPECT_THAT(error_of("walls add mesh silo.stl", outlet),
+              AllOf(HasSubstr("'walls add mesh'"), HasSubstr("no walls of triangles"), HasSubstr("'cone'")));
+  EXPECT_THAT(error_of("walls add stl silo.stl", outlet), HasSubstr("no walls of triangles"));
+  EXPECT_THAT(error_of("walls add sphere 0 0 0 9 walls cut mesh", outlet), HasSubstr("'walls cut mesh'"));
+  EXPECT_THAT(error_of("walls add tube", outlet), AllOf(HasSubstr("'walls add tube'"), HasSubstr("'cone'")));
   EXPECT_THAT(error_of("walls add cone w", outlet), HasSubstr("'x' or 'y' or 'z'"));
   EXPECT_THAT(error_of("walls add cone z 0 0 4 -1 0 9", outlet), HasSubstr("zero or positive"));
   EXPECT_THAT(error_of("walls add cone z 0 0 4 9 9 0", outlet), HasSubstr("lo < hi"));
