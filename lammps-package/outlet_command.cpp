@@ -112,10 +112,31 @@ void OutletCommand::validate() const {
   if (!schedules_.empty() && schedules_.rbegin()->first > outlets_.size())
     throw InvalidParameter(message("'schedule ", schedules_.rbegin()->first,
                                    "' is for an outlet that is not there: ", "they count from 1 to ", outlets_.size()));
-  if (rates_ == std::vector<double>{0.0})
-    throw InvalidParameter("'injection' is 0 but the injection rate must be positive");
-  if (outflow_ == std::vector<double>{0.0}) throw InvalidParameter("'outflow' is 0 but the outflow must be positive");
+  require_births();
   static_cast<void>(outlets());
+}
+
+/// At one outlet, at some time.
+void OutletCommand::require_births() const {
+  std::string closed;
+  for (std::size_t k = 0; k < outlets_.size(); ++k) {
+    const std::vector<double>& given = rates_.empty() ? outflow_ : rates_;
+    if (!given.empty() && given[k] == 0.0) continue;
+    const auto found = schedules_.find(k + 1);
+    if (found == schedules_.end() || found->second.steps.empty() || found->second.steps.front().time > 0.0) return;
+    for (const Step& step : found->second.steps)
+      if (step.factor > 0.0) return;
+    closed += message(closed.empty() ? "'schedule " : ", 'schedule ", k + 1, "'");
+  }
+  if (closed.empty())
+    throw InvalidParameter(message("'", rate_keyword(), "' is 0", outlets_.size() > 1 ? " at all outlets" : "",
+                                   " but must be positive", outlets_.size() > 1 ? " at one of them at least" : ""));
+  throw InvalidParameter(message(closed, " is 0 from time 0 on, so that nothing ever leaves, but one factor of an ",
+                                 "outlet with an outflow must be positive"));
+}
+
+const char* OutletCommand::rate_keyword() const {
+  return gravity_ ? "beverloo" : rates_.empty() ? "outflow" : "injection";
 }
 
 void OutletCommand::require_number_of(const char* keyword, std::size_t rates) const {
@@ -123,7 +144,7 @@ void OutletCommand::require_number_of(const char* keyword, std::size_t rates) co
   throw InvalidParameter(
       message("'", keyword, "' has ", rates, rates == 1 ? " rate" : " rates",
               outlets_.size() == 1 ? " but there is " : " but there are ", outlets_.size(),
-              outlets_.size() == 1 ? " outlet: give" : " outlets: give one for each, in the order of the outlets"));
+              outlets_.size() == 1 ? " outlet: give one" : " outlets: give one for each, in the order of the outlets"));
 }
 
 void OutletCommand::repeat(const spot::Periodic& periodic) {

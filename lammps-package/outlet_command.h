@@ -49,6 +49,9 @@ class OutletCommand {
   /// Births at each outlet. With `outflow` and `beverloo` they are as many as carry what is given, or predicted.
   spot::Injection injection(const spot::SpotParameters& spots, double diameter) const;
 
+  /// The keyword that rates are given by.
+  const char* rate_keyword() const;
+
   /// The names of LAMMPS variables whose values are factors on rates, by outlets from 0 on. The rates are for a value
   /// of 1 up to then.
   std::map<std::size_t, std::string> variables() const;
@@ -92,6 +95,7 @@ class OutletCommand {
   void require_number_of(const char* keyword, std::size_t rates) const;
   std::optional<double> slope_at(std::size_t outlet) const;
   double hopper_factor(std::size_t outlet) const;
+  void require_births() const;
   void add_doubts_of_hopper(std::size_t outlet, std::vector<std::string>& doubts) const;
 
   std::vector<spot::Outlet> outlets_;

@@ -167,7 +167,8 @@ TEST(OutletCommand, MistakesAreNamed) {
               AllOf(HasSubstr("'outflow' is missing"), HasSubstr("'injection'"), HasSubstr("'beverloo g'")));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 outflow 30"), HasSubstr("only one of"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4 outflow 30 beverloo 1"), HasSubstr("only one of"));
-  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow 30 2"), HasSubstr("'outflow' has 2 rates but there is 1"));
+  EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow 30 2"),
+              HasSubstr("'outflow' has 2 rates but there is 1 outlet: give one"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow -1"), HasSubstr("zero or positive"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 outflow 0"), HasSubstr("must be positive"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4 injection 300 beverloo 1"), HasSubstr("only one of"));
@@ -179,6 +180,18 @@ TEST(OutletCommand, MistakesAreNamed) {
   EXPECT_THAT(error_of(box, "orifice -5 0 0 3 orifice 5 0 1 3 injection 1 1"), HasSubstr("height"));
   EXPECT_THAT(error_of(box, "slot 0 0 0 6 injection 1"), HasSubstr("not a finite number"));
   EXPECT_THAT(error_of(box, "slot 0 0 0 6 0 injection 1"), HasSubstr("must be positive"));
+  const std::string two = "orifice -5 0 0 3 orifice 5 0 0 3 ";
+  EXPECT_THAT(error_of(box, two + "outflow 0 0"), HasSubstr("'outflow' is 0 at all outlets but must be positive"));
+  EXPECT_THAT(error_of(box, two + "injection 0 0"), HasSubstr("'injection' is 0 at all outlets"));
+  for (const std::string rate : {"injection 300", "outflow 30", "beverloo 1"})
+    EXPECT_THAT(error_of(box, "orifice 0 0 0 4 " + rate + " schedule 1 0 0 3 0"),
+                AllOf(HasSubstr("'schedule 1' is 0 from time 0 on"), HasSubstr("must be positive")));
+  EXPECT_THAT(error_of(box, two + "outflow 0 3 schedule 2 0 0"), HasSubstr("'schedule 2' is 0 "));
+  EXPECT_THAT(error_of(box, two + "outflow 2 3 schedule 1 0 0 schedule 2 0 0"),
+              HasSubstr("'schedule 1', 'schedule 2' is 0 "));
+  for (const std::string opens :
+       {"schedule 1 0 0", "schedule 1 0 0 schedule 2 1 0", "schedule 2 0 0 1 2", "schedule 1 0 0 schedule 2 v_open"})
+    EXPECT_NO_THROW(command_of(box, two + "outflow 2 3 " + opens)) << opens;
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 2 0 1"),
               AllOf(HasSubstr("schedule 2"), HasSubstr("1 to 1")));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 3 injection 1 schedule 1 1 0 0.5 1"),

@@ -35,7 +35,8 @@ def test_missing_keyword(tmp_path, keyword, named):
 
 @pytest.mark.parametrize("words, said", [
     ("inflence 1e-2", ["unknown keyword 'inflence'", "influence injection"]),
-    ("7", ["2 rates but there is 1 outlet"]),
+    ("7", ["2 rates but there is 1 outlet: give one"]),
+    ("schedule 1 0 0", ["'schedule 1' is 0 from time 0 on", "must be positive"]),
     ("seed 1 7", ["unknown keyword '7'"]),
     ("dz", ["'dz' ends before its value"]),
     ("buffer 1", ["'buffer' ends before its value", "base"]),
@@ -121,12 +122,21 @@ def test_value(tmp_path, words, said):
     ({"orifice": "orifice 0 0 0 2"}, ["orifice radius is 2 ", "at least the spot radius, 2.6"]),
     ({"orifice": "orifice 0 0 3"}, ["'influence' is not a finite number", "'orifice'"]),
     ({"walls": "region silo"}, ["region 'silo' does not exist"]),
+    ({"walls": "walls add block -5 5 -4 4 0 19 buffer 3 2"},
+     ["buffer of spots from side walls is 3 ", "must be below 3,", "orifice of radius 3"]),
+    ({"walls": "walls add block -5 5 -4 4 0 19 walls cut block -5 5 -4 4 0 19"}, ["does not open", "walls leave no inside"]),
+    ({"walls": "walls add mesh silo.stl"}, ["'walls add mesh'", "no walls of triangles", "'cone'"]),
 ], ids=lambda value: " ".join(value.values()) if isinstance(value, dict) else "")
 def test_geometry(tmp_path, parts, said):
     has(error_of(deck(fix(**parts), run="run 1"), tmp_path), "fix spot", *said)
 
 
 BLOCK = "region silo block -5 5 -4 4 0 19 open 5"
+
+
+def test_buffer_as_wide_as_the_orifice_in_a_region(tmp_path):
+    error = error_of(deck(fix("buffer 3.5 2", walls="region silo"), before=BLOCK), tmp_path)
+    has(error, "buffer of spots from side walls is 3.5 ", "must be below 3,", "orifice of radius 3")
 
 
 def test_region_deleted_between_runs(tmp_path):
