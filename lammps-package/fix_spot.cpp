@@ -376,7 +376,7 @@ void FixSpot::init() {
     model->command.resolve(model->sizes.mean(), model->sizes.mean_volume);
     check_box();
     make_container();
-    model->command.outlets.look_for_hoppers(*model->container);
+    model->command.outlets.look_at_walls(*model->container);
     model->command.resolve_rates(model->sizes.mean(), model->sizes.mean_volume);
     tell_predicted_outflow();
     check_variables();
@@ -425,17 +425,40 @@ void FixSpot::dry_run() {
 void FixSpot::tell_predicted_outflow() {
   const OutletCommand &outlets = model->command.outlets;
   const std::vector<double> outflow = outlets.predicted_outflow(model->sizes.mean());
-  if (outflow.empty() || model->told_outflow || comm->me != 0) return;
+  if (outflow.empty() || model->told_outflow) return;
   model->told_outflow = true;
+  const std::vector<double> depths = bed_above_outlets();
+  if (comm->me != 0) return;
   const spot::Outlets all = outlets.outlets();
+  const std::vector<double> births = model->command.births(model->sizes.mean());
   for (std::size_t k = 0; k < outflow.size(); ++k) {
     const std::string hopper = outlets.text_of_hopper(k);
     utils::logmesg(
         lmp, message("fix spot: Beverloo's law predicts an outflow of ", outflow[k], " grains per time through the ",
-                     all[k].name(), ", ", model->command.spots.injection_rate.largest(k), " births of spots per time\n",
+                     all[k].name(), ", by ", births[k], " births of spots per time",
+                     outlets.has_schedule(k) ? ", where the factor of its schedule is 1\n" : "\n",
                      hopper.empty() ? "" : "fix spot: this is " + hopper + "\n"));
   }
-  for (const std::string &doubt : outlets.doubts(model->sizes.largest)) error->warning(FLERR, "fix spot: " + doubt);
+  utils::logmesg(lmp, "fix spot: " + OutletCommand::range_of_law() + "\n");
+  for (const std::string &doubt : outlets.doubts(model->sizes.largest, depths))
+    error->warning(FLERR, "fix spot: " + doubt);
+}
+
+/// The height of the highest grain over each outlet (length); nothing before there are grains.
+std::vector<double> FixSpot::bed_above_outlets() const {
+  const spot::Container &container = *model->container;
+  const double base = container.outlets().height(), radius = 0.5 * model->sizes.largest;
+  std::vector<double> depths(container.outlets().size(), 0.0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const spot::Vector3 at(atom->x[i][0], atom->x[i][1], atom->x[i][2]);
+    if (!container.is_over_outlet(at)) continue;
+    double &depth = depths[container.nearest_outlet_index(at)];
+    depth = std::max(depth, at.z() + radius - base);
+  }
+  for (double &depth : depths) depth = -depth;
+  depths = model->ranks->least(depths);
+  for (double &depth : depths) depth = -depth;
+  return atom->natoms == 0 ? std::vector<double>() : depths;
 }
 
 /// A variable may have been deleted, or defined again, since the last run.

@@ -68,6 +68,7 @@ class FixSpot : public Fix {
   void check_integrators() const;
   void name_unused_forces();
   void tell_predicted_outflow();
+  std::vector<double> bed_above_outlets() const;
   void check_variables() const;
   void follow_variables();
   void make_container();

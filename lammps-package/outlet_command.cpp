@@ -7,6 +7,7 @@
 #include "spot/drivers/defaults.hpp"
 #include "spot/geometry/hopper.hpp"
 #include "spot/geometry/round_hole.hpp"
+#include "spot/geometry/silo_width.hpp"
 #include "spot/geometry/slot.hpp"
 #include "words.h"
 
@@ -152,10 +153,12 @@ void OutletCommand::repeat(const spot::Periodic& periodic) {
   outlets_.assign(repeated.begin(), repeated.end());
 }
 
-void OutletCommand::look_for_hoppers(const spot::Container& walls) {
+void OutletCommand::look_at_walls(const spot::Container& walls) {
   slopes_.clear();
+  widths_.clear();
   if (!gravity_) return;
   for (const spot::Outlet& outlet : outlets_) {
+    widths_.push_back(spot::silo_width(walls, outlet));
     slopes_.push_back(spot::hopper_slope(walls, outlet));
     if (!hopper_ || hopper_->half_angle || slopes_.back()) continue;
     throw InvalidParameter(message("'hopper' finds no hopper that ends at the ", outlet.name(),
@@ -169,10 +172,15 @@ std::optional<spot::Orifice> OutletCommand::single_orifice() const {
   return outlets_.size() == 1 ? last_orifice_ : std::nullopt;
 }
 
-spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, double diameter) const {
+std::vector<double> OutletCommand::births(const spot::SpotParameters& spots, double diameter) const {
   std::vector<double> rates = rates_;
   for (const double grains : outflow_) rates.push_back(spot::births_for(grains, spots, diameter));
   for (const double grains : predicted_outflow(diameter)) rates.push_back(spot::births_for(grains, spots, diameter));
+  return rates;
+}
+
+spot::Injection OutletCommand::injection(const spot::SpotParameters& spots, double diameter) const {
+  const std::vector<double> rates = births(spots, diameter);
   std::vector<spot::RateSchedule> all;
   for (std::size_t k = 0; k < rates.size(); ++k) {
     std::vector<spot::RateStep> steps;
@@ -227,7 +235,15 @@ std::string OutletCommand::text_of_hopper(std::size_t outlet) const {
                  90.0 - hopper_->of_material);
 }
 
-std::vector<std::string> OutletCommand::doubts(double diameter) const {
+std::string OutletCommand::range_of_law() {
+  using Law = spot::BeverlooLaw;
+  return message("Beverloo's law is for flat bases, outlets of ", Law::least_width, " diameters or more, silos wider ",
+                 "than ", Law::least_silo_in_holes, " outlets and than an outlet and ", Law::least_silo_beyond,
+                 " diameters, and beds deeper than ", Law::least_depth_in_silos, " widths of the silo and ",
+                 Law::least_depth_in_holes, " of the outlet");
+}
+
+std::vector<std::string> OutletCommand::doubts(double diameter, const std::vector<double>& depths) const {
   std::vector<std::string> doubts;
   if (!gravity_) return doubts;
   for (std::size_t k = 0; k < outlets_.size(); ++k) {
@@ -236,8 +252,29 @@ std::vector<std::string> OutletCommand::doubts(double diameter) const {
                                spot::BeverlooLaw::least_width,
                                " grains may clog, which neither Beverloo's law nor the spot model knows"));
     add_doubts_of_hopper(k, doubts);
+    add_doubts_of_silo(k, diameter, depths.empty() ? std::nullopt : std::optional(depths[k]), doubts);
   }
   return doubts;
+}
+
+/// In diameters. What is wide by the walls of a hopper, or deep, is another law's.
+void OutletCommand::add_doubts_of_silo(std::size_t outlet, double diameter, std::optional<double> depth,
+                                       std::vector<std::string>& doubts) const {
+  using Law = spot::BeverlooLaw;
+  if (slope_at(outlet) || outlet >= widths_.size()) return;
+  const double hole = 2.0 * outlets_[outlet].hole->widest_radius() / diameter;
+  const double least_silo = std::max(Law::least_silo_in_holes * hole, hole + Law::least_silo_beyond);
+  double least_depth = Law::least_depth_in_holes * hole;
+  if (widths_[outlet]) {
+    const double silo = *widths_[outlet] / diameter;
+    least_depth = std::max(least_depth, Law::least_depth_in_silos * silo);
+    if (silo < least_silo)
+      doubts.push_back(message("the nearest wall is ", 0.5 * silo, " diameters from the middle of the ",
+                               outlets_[outlet].name(), ": Beverloo's law is for ", 0.5 * least_silo, " or more"));
+  }
+  if (depth && *depth / diameter < least_depth)
+    doubts.push_back(message("the bed above the ", outlets_[outlet].name(), " is ", *depth / diameter,
+                             " diameters deep: Beverloo's law is for ", least_depth, " or more"));
 }
 
 void OutletCommand::add_doubts_of_hopper(std::size_t outlet, std::vector<std::string>& doubts) const {

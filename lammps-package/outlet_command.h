@@ -38,16 +38,20 @@ class OutletCommand {
   /// In the order in which they were given.
   spot::Outlets outlets() const { return spot::Outlets(outlets_); }
 
-  /// Which outlets are the ends of hoppers. Throws spot::InvalidParameter, naming it, where 'hopper' has to know the
-  /// half-angle at an outlet, and the walls don't tell. Up to then all bases are flat, but for a half-angle that was
-  /// given.
-  void look_for_hoppers(const spot::Container& walls);
+  /// For Beverloo's law: how wide the silo is at the outlets, and which are the ends of hoppers. Throws
+  /// spot::InvalidParameter, naming it, where 'hopper' has to know the half-angle at an outlet, and the walls don't
+  /// tell. Up to then all bases are flat, but for a half-angle that was given, and wide.
+  void look_at_walls(const spot::Container& walls);
 
   /// If there is one outlet, and it is round.
   std::optional<spot::Orifice> single_orifice() const;
 
   /// Births at each outlet. With `outflow` and `beverloo` they are as many as carry what is given, or predicted.
   spot::Injection injection(const spot::SpotParameters& spots, double diameter) const;
+
+  /// The same where the factor of a `schedule` is 1.
+  std::vector<double> births(const spot::SpotParameters& spots, double diameter) const;
+  bool has_schedule(std::size_t outlet) const { return schedules_.count(outlet + 1) > 0; }
 
   /// The keyword that rates are given by.
   const char* rate_keyword() const;
@@ -66,8 +70,12 @@ class OutletCommand {
   /// What `hopper` makes of the outflow of an outlet (from 0 on), and for which half-angles that holds; empty without.
   std::string text_of_hopper(std::size_t outlet) const;
 
-  /// What is to be said of the outflow that is predicted: where the law is beyond its range.
-  std::vector<std::string> doubts(double diameter) const;
+  /// Where Beverloo's law holds, in words.
+  static std::string range_of_law();
+
+  /// What is to be said of the outflow that is predicted: where the law is beyond its range. `depths`: of the bed above
+  /// each outlet (length), if there is one.
+  std::vector<std::string> doubts(double diameter, const std::vector<double>& depths = {}) const;
 
   /// As they were given; all numbers with all digits.
   std::string text_of_outlets() const;
@@ -97,6 +105,8 @@ class OutletCommand {
   double hopper_factor(std::size_t outlet) const;
   void require_births() const;
   void add_doubts_of_hopper(std::size_t outlet, std::vector<std::string>& doubts) const;
+  void add_doubts_of_silo(std::size_t outlet, double diameter, std::optional<double> depth,
+                          std::vector<std::string>& doubts) const;
 
   std::vector<spot::Outlet> outlets_;
   std::vector<std::string> texts_;
@@ -107,6 +117,7 @@ class OutletCommand {
   spot::BeverlooLaw law_;
   std::optional<Hopper> hopper_;
   std::vector<std::optional<double>> slopes_;  // of the walls at each outlet: tangents of half-angles
+  std::vector<std::optional<double>> widths_;  // of the silo at each outlet, where walls are near
   std::map<std::size_t, Schedule> schedules_;  // by the number of the outlet, from 1 on
 };
 

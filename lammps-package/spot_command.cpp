@@ -257,11 +257,24 @@ void SpotCommand::resolve(double diameter, double mean_volume) {
   resolve_rates(diameter, mean_volume);
 }
 
+namespace {
+
+/// Where all grains have the diameter of the mean one.
+spot::SpotParameters among_equal_grains(spot::SpotParameters spots) {
+  spots.mean_grain_volume = 1.0;
+  return spots;
+}
+
+}  // namespace
+
 void SpotCommand::resolve_rates(double diameter, double mean_volume) {
-  spots.mean_grain_volume = 1.0;  // for grains of this diameter
-  spots.injection_rate = outlets.injection(spots, diameter);
+  spots.injection_rate = outlets.injection(among_equal_grains(spots), diameter);
   spots.holds_outflow = outlets.holds_outflow();
   spots.mean_grain_volume = mean_volume;
+}
+
+std::vector<double> SpotCommand::births(double diameter) const {
+  return outlets.births(among_equal_grains(spots), diameter);
 }
 
 namespace {

@@ -78,6 +78,9 @@ struct SpotCommand {
   /// The rates alone, once the outlets know more of the walls. Part of resolve().
   void resolve_rates(double diameter, double mean_volume);
 
+  /// Births of spots per time at each outlet, where the factor of its schedule is 1; of what is resolved.
+  std::vector<double> births(double diameter) const;
+
   /// All that decides where grains and spots go, as text, once it is resolved, but for the window. `threads`, `average`
   /// and `peratom` are not in it.
   std::vector<std::pair<std::string, std::string>> settings() const;

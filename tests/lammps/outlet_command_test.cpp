@@ -120,12 +120,50 @@ TEST(OutletCommand, SaysWhereBeverloosLawIsBeyondItsRange) {
               AllOf(HasSubstr("no outflow"), HasSubstr("not wider than 8")));
 }
 
+/// Of a box between x and y of -x, x and -y, y.
+std::vector<std::string> doubts_in_a_box(double x, double y, const std::string& outlets, std::vector<double> depths) {
+  OutletCommand command = command_of(box, outlets + " beverloo 1").outlets;
+  command.look_at_walls(*spot::box_silo(-x, x, -y, y, command.outlets(), {0.25, 2.0}));
+  return command.doubts(1.0, depths);
+}
+
+TEST(OutletCommand, SaysWhereWallsAreNearForBeverloosLawAndBedsShallow) {
+  // 8 d wide: the silo must be 38 d wide, the bed 16 d deep, or 1.2 times as deep as the silo is wide.
+  EXPECT_TRUE(doubts_in_a_box(19.1, 19.1, "orifice 0 0 0 4", {46.0}).empty());
+  EXPECT_TRUE(doubts_in_a_box(200.0, 200.0, "orifice 0 0 0 4", {16.1}).empty()) << "no wall near";
+  const auto near = doubts_in_a_box(25.0, 6.0, "orifice 0 0 0 4", {16.1});
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_THAT(near[0], AllOf(HasSubstr("nearest wall is 6 diameters"), HasSubstr("orifice of radius 4"),
+                             HasSubstr("is for 19 or more")));
+  const auto shallow = doubts_in_a_box(25.0, 25.0, "orifice 0 0 0 4", {59.0});
+  ASSERT_EQ(shallow.size(), 1u);
+  EXPECT_THAT(shallow[0], AllOf(HasSubstr("is 59 diameters deep"), HasSubstr("is for 60 or more")));
+  // A wide outlet: 2.5 of its widths. Of two each has its own.
+  const auto wide = doubts_in_a_box(70.0, 70.0, "orifice 0 0 0 30 slot 60 0 0 8 8", {1e3, 15.0});
+  ASSERT_EQ(wide.size(), 3u);
+  EXPECT_THAT(wide[0], AllOf(HasSubstr("nearest wall is 70 "), HasSubstr("radius 30"), HasSubstr("is for 75 or more")));
+  EXPECT_THAT(wide[1], AllOf(HasSubstr("nearest wall is 10 "), HasSubstr("slot of 8 by 8")));
+  EXPECT_THAT(wide[2], AllOf(HasSubstr("slot of 8 by 8"), HasSubstr("is for 24 or more")));
+  EXPECT_THAT(OutletCommand::range_of_law(), AllOf(HasSubstr("of 6 diameters or more"), HasSubstr("2.5 outlets"),
+                                                   HasSubstr("30 diameters"), HasSubstr("1.2 widths")));
+}
+
+TEST(OutletCommand, BirthsThatAreToldAreThoseOfTheOutflowThatIsTold) {
+  const SpotCommand c = command_of(box, "orifice -8 0 0 4 slot 8 0 0 6 8 beverloo 1 schedule 1 0 0 5 3");
+  const std::vector<double> outflow = c.outlets.predicted_outflow(1.0), births = c.births(1.0);
+  ASSERT_EQ(births.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(births[k], outflow[k] / (c.spots.influence * 77), 1e-6);
+  EXPECT_NEAR(c.spots.injection_rate.largest(0), 3.0 * births[0], 1e-6);
+  EXPECT_TRUE(c.outlets.has_schedule(0));
+  EXPECT_FALSE(c.outlets.has_schedule(1));
+}
+
 /// A cone whose half-angle has the tangent 0.8, 38.66 degrees, below a cylinder; looked at by 'hopper'.
 OutletCommand over_a_cone(const std::string& rates) {
   const SpotCommand c =
       command_of("walls add cone z 0 0 4 12 0 10 walls add cylinder z 0 0 12 10 60", "orifice 0 0 0 4 " + rates);
   OutletCommand outlets = c.outlets;
-  outlets.look_for_hoppers(
+  outlets.look_at_walls(
       spot::ShapedContainer(std::get<ShapedWalls>(c.walls).solid({}), outlets.outlets(), {0.25, 2.0}));
   return outlets;
 }
@@ -160,7 +198,7 @@ TEST(OutletCommand, MistakesAreNamed) {
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4 beverloo 1 hopper 90"), HasSubstr("angle of repose must be below 90"));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4 beverloo 1 hopper 24 0"), HasSubstr("half-angle must be positive"));
   OutletCommand flat = command_of(box, "orifice 0 0 0 4 beverloo 1 hopper 24").outlets;
-  EXPECT_THROW(flat.look_for_hoppers(*spot::box_silo(-20, 20, -5, 5, flat.outlets(), {0.25, 2.0})),
+  EXPECT_THROW(flat.look_at_walls(*spot::box_silo(-20, 20, -5, 5, flat.outlets(), {0.25, 2.0})),
                spot::InvalidParameter);
   EXPECT_THAT(error_of(box, "injection 300"), AllOf(HasSubstr("'orifice' is missing"), HasSubstr("'slot")));
   EXPECT_THAT(error_of(box, "orifice 0 0 0 4"),

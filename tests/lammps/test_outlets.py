@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Walls made of shapes, several outlets with rates and schedules of their own, and rates by Beverloo's law."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -104,6 +106,24 @@ def test_beverloos_law_is_told(tmp_path):
     # 0.58 * 0.58 * 6 / pi * (5.6 - 1.4)^2.5
     assert "Beverloo's law predicts an outflow of 23.2263" in out, out[-2000:]
     assert "orifice of radius 2.8" in out and "below 6 grains may clog" in out
+    assert "outlets of 6 diameters or more, silos wider than 2.5 outlets" in out
+    assert "nearest wall is 4 diameters from the middle of the orifice of radius 2.8" in out and "is for 17.8 or more" in out
+    assert re.search(r"the bed above the orifice of radius 2.8 at \(0, 0, 0\) is [\d.]+ diameters deep: .* is for 11\.2 or more", out)
+
+
+@needs_mpirun
+def test_births_are_told_for_the_outflow_that_is_told(tmp_path):
+    """Whatever the schedule, of each outlet by itself."""
+    write_wide(tmp_path)
+    command = fix(TWO, rates="beverloo 1", more="volume 77 schedule 2 0 0.5 1 3")
+    for ranks in (1, 3):
+        out = run_ok(deck(command, run="run 1"), tmp_path, launcher=on_ranks(ranks))
+        told = re.findall(r"outflow of (\S+) grains per time through the (slot|orifice).*, by (\S+) births of spots per time(.*)", out)
+        assert [one[1] for one in told] == ["slot", "orifice"]
+        for outflow, _, births, _ in told:
+            assert float(births) == pytest.approx(float(outflow) / (1e-2 * 77), rel=1e-4)
+        assert told[0][3] == "" and "factor of its schedule is 1" in told[1][3]
+        assert out.count("Beverloo's law is for flat bases") == 1 and out.count("diameters deep") == 2
 
 
 @pytest.mark.parametrize("command, said", [

@@ -8,6 +8,7 @@
 
 #include "spot/geometry/shaped_container.hpp"
 #include "spot/geometry/shapes.hpp"
+#include "spot/geometry/silo_width.hpp"
 #include "spot/geometry/silos.hpp"
 #include "spot/geometry/slot.hpp"
 
@@ -66,6 +67,18 @@ TEST(HopperAnalytic, TheFactorIsTheFormula) {
               std::pow(std::tan(pi / 6.0) * std::tan(24.0 * pi / 180.0), -0.35), 1e-12);
   EXPECT_NEAR(spot::hopper_factor(spot::tangent(65.999), spot::tangent(24.0)), 1.0, 1e-4);
   EXPECT_EQ(spot::hopper_factor(spot::tangent(80.0), spot::tangent(24.0)), 1.0) << "as over a flat base";
+}
+
+TEST(SiloWidthAnalytic, TheNearestWallCountsOnBothSides) {
+  const auto width = [](const auto& silo, const Outlet& outlet) {
+    return spot::silo_width(*silo, outlet).value_or(-1.0);
+  };
+  EXPECT_NEAR(width(spot::box_silo(-60.0, 60.0, -6.0, 8.0, orifice, buffers), orifice), 12.0, 1e-9);
+  EXPECT_NEAR(width(spot::cylinder_silo(0.0, 2.0, 12.0, orifice, buffers), orifice), 22.0, 1e-9);
+  EXPECT_FALSE(spot::silo_width(*spot::box_silo(-300.0, 300.0, -200.0, 200.0, orifice, buffers), orifice))
+      << "far away";
+  const Outlet slot({0.0, 0.0, 0.0}, std::make_shared<spot::Slot>(8.0, 32.0));
+  EXPECT_NEAR(width(spot::box_silo(-20.0, 25.0, -16.0, 16.0, slot, buffers), slot), 40.0, 1e-9) << "across the slot";
 }
 
 }  // namespace

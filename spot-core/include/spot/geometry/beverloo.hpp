@@ -14,6 +14,12 @@ struct BeverlooLaw {
 
   /// Holes that are narrower than so many diameters may clog.
   static constexpr double least_width = 6.0;
+
+  /// It holds in silos that are wider than so many widths of the hole, and than the hole by so many diameters.
+  static constexpr double least_silo_in_holes = 2.5, least_silo_beyond = 30.0;
+
+  /// And under beds that are deeper than so many widths of the silo, and of the hole.
+  static constexpr double least_depth_in_silos = 1.2, least_depth_in_holes = 2.0;
 };
 
 }  // namespace spot
