@@ -101,6 +101,11 @@ std::string lost(std::int64_t grain) {
   return message("grain ", grain, " was lost by LAMMPS: make the simulation box larger");
 }
 
+/// Seen from above. The silo is inside.
+double area_of_box(const Domain &domain) {
+  return (domain.boxhi[0] - domain.boxlo[0]) * (domain.boxhi[1] - domain.boxlo[1]);
+}
+
 /// A variable of this name, with a file's, asks for a dry run.
 constexpr const char *DRY_RUN = "spot_dry_run";
 
@@ -378,6 +383,7 @@ void FixSpot::init() {
     make_container();
     model->command.outlets.look_at_walls(*model->container);
     model->command.resolve_rates(model->sizes.mean(), model->sizes.mean_volume);
+    model->command.require_grains_between_spots(area_of_box(*domain), model->sizes.mean());
     tell_predicted_outflow();
     check_variables();
     if (*model->command.time_ordered && comm->nprocs > 1)
@@ -495,8 +501,13 @@ void FixSpot::follow_variables() {
                                 ", is ", value, " at step ", update->ntimestep - 1, ": ", why));
     };
     if (!(value >= 0.0) || !std::isfinite(value)) refuse("it must be finite, and 0 or more");
+    const double births = value * model->command.spots.injection_rate.at(outlet, 0.0);
+    const double most = model->command.most_births(area_of_box(*domain), model->sizes.mean());
+    if (births > most)
+      refuse(message("it must be at most ", value * (most / births),
+                     ", with which spots carry away all grains that fit into the simulation box"));
     try {
-      model->drainage->change_rate(outlet, now, value * model->command.spots.injection_rate.at(outlet, 0.0));
+      model->drainage->change_rate(outlet, now, births);
     } catch (const spot::InvalidParameter &e) {
       refuse(e.what());
     }

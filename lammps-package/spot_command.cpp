@@ -277,6 +277,23 @@ std::vector<double> SpotCommand::births(double diameter) const {
   return outlets.births(among_equal_grains(spots), diameter);
 }
 
+double SpotCommand::most_births(double area, double diameter) const {
+  return spot::births_that_empty(area, among_equal_grains(spots), diameter);
+}
+
+void SpotCommand::require_grains_between_spots(double area, double diameter) const {
+  spots.validate();
+  const double births = spots.injection_rate.largest(), most = most_births(area, diameter);
+  if (births <= most) return;
+  const double grains = 1.0 / spot::births_for(1.0, among_equal_grains(spots), diameter);  // a spot
+  const bool counts_grains = outlets.holds_outflow();
+  throw InvalidParameter(message("'", outlets.rate_keyword(), "' has ", counts_grains ? births * grains : births,
+                                 counts_grains ? " grains" : " births of spots",
+                                 " per time, of all outlets together, but at most ",
+                                 counts_grains ? most * grains : most, " are allowed: with more, spots that climb at ",
+                                 spots.fastest(), " carry away all grains that fit into the simulation box"));
+}
+
 namespace {
 
 std::string text_of_places(const std::optional<spot::Interval>& walls) {

@@ -81,6 +81,13 @@ struct SpotCommand {
   /// Births of spots per time at each outlet, where the factor of its schedule is 1; of what is resolved.
   std::vector<double> births(double diameter) const;
 
+  /// The most births of spots per time, of all outlets together, in a simulation box with a base of this area
+  /// (length^2). Beyond, no grains are left between spots.
+  double most_births(double area, double diameter) const;
+
+  /// Throws spot::InvalidParameter, naming the keyword, if there are more than that, and as the spots' validate().
+  void require_grains_between_spots(double area, double diameter) const;
+
   /// All that decides where grains and spots go, as text, once it is resolved, but for the window. `threads`, `average`
   /// and `peratom` are not in it.
   std::vector<std::pair<std::string, std::string>> settings() const;

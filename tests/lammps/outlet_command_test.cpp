@@ -16,6 +16,7 @@
 
 namespace {
 
+using spot::InvalidParameter;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -156,6 +157,29 @@ TEST(OutletCommand, BirthsThatAreToldAreThoseOfTheOutflowThatIsTold) {
   EXPECT_NEAR(c.spots.injection_rate.largest(0), 3.0 * births[0], 1e-6);
   EXPECT_TRUE(c.outlets.has_schedule(0));
   EXPECT_FALSE(c.outlets.has_schedule(1));
+}
+
+TEST(OutletCommand, SpotsLeaveGrainsBetweenThem) {
+  // In each height of 1 there are 0.58 * 6 / pi * 100 grains; spots take F / 3.2.
+  const double most = 0.58 * 6.0 / 3.14159265358979 * 100.0 * 3.2;
+  const auto require = [&](const std::string& rates) {
+    command_of(box, "orifice 0 0 0 4 " + rates).require_grains_between_spots(100.0, 1.0);
+  };
+  EXPECT_NO_THROW(require(spot::message("outflow ", 0.999 * most)));
+  EXPECT_NO_THROW(require(spot::message("dilation 0.03 outflow ", 3.99 * most))) << "they climb faster";
+  const auto refusal = [&](const std::string& rates) {
+    try {
+      require(rates);
+    } catch (const InvalidParameter& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal("outflow 1e7"), AllOf(HasSubstr("'outflow' has 10000000 grains per time"),
+                                            HasSubstr(spot::message("at most ", std::floor(most)).substr(0, 11))));
+  EXPECT_THAT(refusal(spot::message("outflow ", 0.6 * most, " schedule 1 1 2")), HasSubstr("'outflow' has"));
+  EXPECT_THAT(refusal("injection 1e6"), HasSubstr("'injection' has 1000000 births of spots per time"));
+  EXPECT_THAT(refusal("beverloo 1e9"), HasSubstr("'beverloo' has"));
 }
 
 /// A cone whose half-angle has the tangent 0.8, 38.66 degrees, below a cylinder; looked at by 'hopper'.

@@ -37,6 +37,7 @@ def test_missing_keyword(tmp_path, keyword, named):
     ("inflence 1e-2", ["unknown keyword 'inflence'", "influence injection"]),
     ("7", ["2 rates but there is 1 outlet: give one"]),
     ("schedule 1 0 0", ["'schedule 1' is 0 from time 0 on", "must be positive"]),
+    ("injection 1e6", ["'injection' has 1000000 births of spots per time", "at most 347.", "fit into the simulation box"]),
     ("seed 1 7", ["unknown keyword '7'"]),
     ("dz", ["'dz' ends before its value"]),
     ("buffer 1", ["'buffer' ends before its value", "base"]),
@@ -126,6 +127,7 @@ def test_value(tmp_path, words, said):
      ["buffer of spots from side walls is 3 ", "must be below 3,", "orifice of radius 3"]),
     ({"walls": "walls add block -5 5 -4 4 0 19 walls cut block -5 5 -4 4 0 19"}, ["does not open", "walls leave no inside"]),
     ({"walls": "walls add mesh silo.stl"}, ["'walls add mesh'", "no walls of triangles", "'cone'"]),
+    ({"injection": "outflow 1e7"}, ["'outflow' has 10000000 grains per time", "at most", "fit into the simulation box"]),
 ], ids=lambda value: " ".join(value.values()) if isinstance(value, dict) else "")
 def test_geometry(tmp_path, parts, said):
     has(error_of(deck(fix(**parts), run="run 1"), tmp_path), "fix spot", *said)

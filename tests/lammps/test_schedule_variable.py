@@ -76,10 +76,15 @@ def test_a_restart_file_knows_the_variable(tmp_path):
     ("variable gate index 1 2", ["variable 'gate'", "is not equal-style"]),
     ("variable gate equal -(step>=3)", ["variable 'gate'", "outlet 1, is -1 at step 3", "must be finite, and 0 or more"]),
     ("variable gate equal exp(1000)", ["variable 'gate'", "is inf at step 0", "must be finite, and 0 or more"]),
-    ("variable gate equal 1+1e5*(step>1)", ["variable 'gate'", "is 100001 at step 2", "shorten the window"])])
+    ("variable gate equal 1+1e5*(step>1)", ["variable 'gate'", "is 100001 at step 2", "it must be at most 3.4", "simulation box"])])
 def test_values_that_do_not_fit_are_named(tmp_path, variable, said):
     error = error_of(deck(FIX + " schedule 1 v_gate", before=variable), tmp_path)
     assert all(part in error for part in said), error
+
+
+def test_values_that_are_too_much_for_the_window_are_named(tmp_path):
+    error = error_of(deck(FIX + " window 0.2 schedule 1 v_gate", before="variable gate equal 1+2*(step>1)", timestep=0.2), tmp_path)
+    assert "is 3 at step 2" in error and "shorten the window" in error, error
 
 
 @needs_mpirun

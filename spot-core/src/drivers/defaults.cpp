@@ -46,4 +46,8 @@ double births_for(double outflow, const SpotParameters& spots, double diameter) 
   return outflow * volume_of_grain(diameter) / spots.missing_volume(diameter);
 }
 
+double births_that_empty(double area, const SpotParameters& spots, double diameter) {
+  return calibration::packing_fraction_of_flow * area * spots.fastest() / spots.missing_volume(diameter);
+}
+
 }  // namespace spot

@@ -50,4 +50,8 @@ double predicted_outflow(const Hole& hole, const BeverlooLaw& law, double gravit
 /// The births of spots per time that bring down so many grains per time.
 double births_for(double outflow, const SpotParameters& spots, double diameter);
 
+/// The births of spots per time with which the fastest of them carry away, in any height, all grains that are on a
+/// cross-section of this area (length^2) at calibration::packing_fraction_of_flow. No flow has more.
+double births_that_empty(double area, const SpotParameters& spots, double diameter);
+
 }  // namespace spot
