@@ -2,6 +2,7 @@
 #include "spot/geometry/body_container.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/cells_on_path.hpp"
 #include "spot/base/errors.hpp"
@@ -17,6 +18,11 @@ void require_room(const Outlet& outlet, double side_buffer) {
   throw InvalidContainer(message("buffer of spots from side walls is ", side_buffer, " but must be below ", half,
                                  ", half the width of the ", outlet.name(), ": no spot fits into it"));
 }
+
+/// Of an upright wall, which may be curved, so that spots would not stay uniform in front of it if it reflected them: a
+/// mirror image in it is smaller or larger than what it shows. Walls that lean must reflect, or spots that only climb
+/// would hardly come to those that move away from them.
+bool is_upright(const Vector3& normal) { return std::abs(normal.z()) < 1e-9; }
 
 }  // namespace
 
@@ -69,7 +75,7 @@ std::optional<Vector3> BodyContainer::reflect_in_cell(const Vector3& start, cons
     if ((position - start).norm() > longest) break;
     if (meets_base(start, position)) break;
     if (const auto wall = first_wall(start, position)) {
-      if (wall->normal.isZero()) break;
+      if (wall->normal.isZero() || is_upright(wall->normal)) break;
       const double behind = wall->normal.dot(start + wall->share * (position - start) - position);
       position += 2.0 * (buffers_.side + behind) * wall->normal;
       continue;
@@ -77,6 +83,7 @@ std::optional<Vector3> BodyContainer::reflect_in_cell(const Vector3& start, cons
     if (position.z() <= outlets_.height()) return position;
     const auto close = nearest_wall(position, buffers_.side);
     if (!close) return position;
+    if (is_upright(close->normal)) break;
     position += 2.0 * (buffers_.side - close->distance) * close->normal;
   }
   return std::nullopt;

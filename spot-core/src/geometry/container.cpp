@@ -10,7 +10,8 @@ namespace spot {
 Vector3 Container::keep_spot_inside(const Vector3& start, const Vector3& target) const {
   if (const auto end = reflect_spot(start, target)) return *end;
   const Vector3 upwards(start.x(), start.y(), target.z());
-  return first_wall(start, upwards) ? start : upwards;
+  if (!first_wall(start, upwards)) return upwards;
+  return reflect_spot(start, {target.x(), target.y(), start.z()}).value_or(start);
 }
 
 const std::vector<AxisPlane>& Container::axis_planes() const {

@@ -102,7 +102,10 @@ std::optional<Vector3> WalledContainer::reflect_in_cell(const Vector3& start, co
   Vector3 position = target;
   for (int round = 0; round < rounds; ++round) {
     const Vector3 before = position;
-    for (const Bounded& b : walls_) position = b.wall->reflect_spot(b.spot_buffer, position);
+    for (const Bounded& b : walls_) {
+      if (b.wall->curved() && b.wall->nearest(position).distance < b.spot_buffer) return std::nullopt;
+      position = b.wall->reflect_spot(b.spot_buffer, position);
+    }
     if (position != before) continue;
     if (first_wall(start, position)) break;
     return position;

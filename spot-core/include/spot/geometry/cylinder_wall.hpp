@@ -11,6 +11,7 @@ class CylinderWall : public Wall {
   /// Throws InvalidContainer unless the radius is positive.
   CylinderWall(double x, double y, double radius);
   WallContact nearest(const Vector3& centre) const override;
+  bool curved() const override { return true; }
   std::optional<WallOnPath> meet(const Vector3& from, const Vector3& to) const override;
 
  private:

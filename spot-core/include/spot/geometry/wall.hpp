@@ -20,6 +20,10 @@ class Wall {
   /// Reflection keeps spots that walk along a plane wall uniformly distributed in front of it.
   virtual Vector3 reflect_spot(double buffer, const Vector3& target) const;
 
+  /// Is it none that reflects spots? The mirror image in a curved wall is smaller or larger than what it shows, so
+  /// spots would not stay uniform in front of it.
+  virtual bool curved() const { return false; }
+
   /// Where the straight path from the inner side passes this wall. A path that begins behind it meets it at once,
   /// unless it ends on the inner side.
   virtual std::optional<WallOnPath> meet(const Vector3& from, const Vector3& to) const = 0;
