@@ -81,12 +81,12 @@ INSTANTIATE_TEST_SUITE_P(Down, SpotsInTubesStatistical, testing::Values(0.0, 0.5
 /// are as likely as their opposites. Walks begin farther from all other walls than they come.
 TEST(SpotsAtLeaningWallsStatistical, WithoutADriftTheyStayUniform) {
   const double lean = scenes::pi / 6.0;
-  const Vector3 foot(-20.0, 0.0, 60.0), normal(std::cos(lean), 0.0, std::sin(lean));
+  const Vector3 foot(-20.0, 0.0, 60.0), normal(std::cos(lean), 0.0, -std::sin(lean));
   const auto distance = [&](const Vector3& place) { return normal.dot(place - foot); };
   const ShapedContainer silo(spot::block({-60, -10, 0}, {60, 10, height}) & spot::half_space(foot, normal), orifice,
                              buffers);
   const Walks walks{{-60.0, -9.75, 20.0},
-                    {30.0, 9.75, 100.0},
+                    {45.0, 9.75, 100.0},
                     0.5,
                     60000,
                     16,
