@@ -60,7 +60,8 @@ def test_a_file_is_compared_and_decides_between_box_and_mixture(runs, tmp_path):
 
 def test_stored_references_are_known():
     """By what they hold: their files do not say of what scene they are."""
-    kinds = {"hoppers": "hopper", "benchmark-silo": "hopper", "periodic-slot": "box", "two-outlets": "box", "bidisperse": "mixture"}
+    kinds = {"hoppers": "hopper", "benchmark-silo": "hopper", "half-full": "round container", "periodic-slot": "box",
+             "two-outlets": "box", "bidisperse": "mixture"}
     assert {(path.parent.name, summary.kind_of(str(path)).what) for path in EXAMPLES.glob("*/dem*.json")} == set(kinds.items())
 
 

@@ -18,5 +18,8 @@ def _draw(path, reference, spot):
     plots_round_heap.save_drainage(path, reference, spot, MOMENTS)
 
 
+KIND = quantities.Kind("round container", 40.0, _measure, _draw)
+
+
 def main():
-    command_line.run(lambda: quantities.compare_profiles(__doc__, 40.0, "round container", _measure, _draw))
+    command_line.run(lambda: quantities.run_command(__doc__, KIND))

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Measure what a scene has, or compare it, whatever the scene: hopper.py, box.py or mixture.py, as scene.json and the
-sizes of the
-grains tell."""
+sizes of the grains tell; round_heap.py where its statistics are among the runs."""
 
 import numpy as np
 
 from ..base.errors import SceneError
 from ..reading.dump import read_frames
 from ..reading.scene import BOX_KEYS, HOPPER_KEYS, path_beside, read_values, require_existence
-from . import box, command_line, hopper, mixture, quantities
+from . import box, command_line, hopper, mixture, quantities, round_heap
 
-KINDS = (hopper.KIND, box.KIND, mixture.KIND)
+KINDS = (hopper.KIND, box.KIND, mixture.KIND, round_heap.KIND)
+ROUND = (hopper.KIND, round_heap.KIND)  # of one scene.json
 UNEQUAL = 1e-3  # relative difference of radii
 
 
@@ -37,15 +37,16 @@ def _is_unequal(run):
 def _kind_of_names(names):
     if "large_share_left" in names:
         return mixture.KIND
+    if "over_after" in names:
+        return round_heap.KIND
     return hopper.KIND if any(name.startswith("mass_flow_index") for name in names) else box.KIND
 
 
 def common_kind(runs):
     """The Kind by which all can be measured; raises SceneError where there is none. A mixture may have grains of one
-    size, so stored
-    statistics decide between box and mixture, or else any run with two sizes."""
+    size, and a hopper may be drained to its end: so stored statistics decide, or else any run with two sizes."""
     kinds = [kind_of(run) for run in runs]
-    other = next((k for k, kind in enumerate(kinds) if (kind is hopper.KIND) != (kinds[0] is hopper.KIND)), None)
+    other = next((k for k, kind in enumerate(kinds) if (kind in ROUND) != (kinds[0] in ROUND)), None)
     if other is not None:
         raise SceneError(f"{runs[0]} is a {kinds[0].what}, but {runs[other]} is a {kinds[other].what}")
     stored = [kind for run, kind in zip(runs, kinds) if quantities.is_stored(run)]
