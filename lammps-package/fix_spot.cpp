@@ -940,7 +940,28 @@ void FixSpot::list_spots() {
 
 /// Between runs a region may be deleted, and finding the overlap may need the walls: find it while they are there.
 void FixSpot::post_run() {
-  if (model->drainage) model->overlap_after_run = largest_overlap();
+  if (!model->drainage) return;
+  model->overlap_after_run = largest_overlap();
+  warn_of_held_spots();
+}
+
+/// Of spots that have climbed less than half of what their steps would take them, though they had time to: walls hold
+/// them, and where nothing leads around, the bed above never drains.
+void FixSpot::warn_of_held_spots() const {
+  constexpr double first_steps = 20.0, many = 0.3;  // steps that say nothing yet; the share of all live spots
+  const spot::SpotParameters &parameters = model->command.spots;
+  const double birth = model->container->outlets().height() - parameters.radius;
+  const std::vector<spot::Spot> spots = model->drainage->spots();
+  const auto is_held = [&](const spot::Spot &spot) {
+    const double way = parameters.step_height * (static_cast<double>(spot.steps) - first_steps);
+    return way > 2.0 * (spot.position.z() - birth);
+  };
+  const std::int64_t live = model->ranks->sum(static_cast<std::int64_t>(spots.size()));
+  const std::int64_t held = model->ranks->sum(std::count_if(spots.begin(), spots.end(), is_held));
+  if (static_cast<double>(held) <= many * static_cast<double>(live) || comm->me != 0) return;
+  error->warning(FLERR, message("fix spot: walls hold ", held, " of ", live,
+                                " spots, which have climbed less than half of the way of their steps: "
+                                "is there a roof over an outlet, or no way from it to the bed?"));
 }
 
 /// Collective.

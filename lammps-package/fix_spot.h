@@ -69,6 +69,7 @@ class FixSpot : public Fix {
   void name_unused_forces();
   void tell_predicted_outflow();
   std::vector<double> bed_above_outlets() const;
+  void warn_of_held_spots() const;
   void check_variables() const;
   void follow_variables();
   void make_container();

@@ -201,3 +201,16 @@ def test_orifice_off_centre(tmp_path):
     below = last["z"] < 2
     assert below.any() and last["z"].min() >= 1
     assert np.hypot(last["x"][below] + 1.5, last["y"][below] - 0.5).max() < 3.1
+
+
+LID = "walls add block -5 5 -4 4 0 19 walls cut block -5 5 -4 4 8 10"
+BEAM = "walls add block -5 5 -4 4 0 19 walls cut block -1.5 1.5 -4 4 8 10"
+
+
+@pytest.mark.parametrize("walls, warned", [(LID, True), (BEAM, False)], ids=["lid", "beam"])
+def test_spots_that_walls_hold_are_told(tmp_path, walls, warned):
+    """Spots below a lid have no way to the bed; around a beam there is one."""
+    inside = 5.0 if warned else 1.5
+    write_data(tmp_path / "packing.data", lattice(lambda x, y, z: (abs(x) > inside + 0.5) | (z < 7.5) | (z > 10.5)))
+    screen = run_ok(deck(fix=f"fix drain all spot {walls} {OPENING} {RATES} seed 1", run="run 120"), tmp_path)
+    assert ("walls hold" in screen) == warned

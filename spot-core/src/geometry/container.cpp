@@ -10,8 +10,7 @@ namespace spot {
 Vector3 Container::keep_spot_inside(const Vector3& start, const Vector3& target) const {
   if (const auto end = reflect_spot(start, target)) return *end;
   const Vector3 upwards(start.x(), start.y(), target.z());
-  if (!first_wall(start, upwards)) return upwards;
-  return reflect_spot(start, {target.x(), target.y(), start.z()}).value_or(start);
+  return first_wall(start, upwards) ? start : upwards;
 }
 
 const std::vector<AxisPlane>& Container::axis_planes() const {
