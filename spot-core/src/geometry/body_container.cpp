@@ -19,11 +19,6 @@ void require_room(const Outlet& outlet, double side_buffer) {
                                  ", half the width of the ", outlet.name(), ": no spot fits into it"));
 }
 
-/// Of an upright wall, which may be curved, so that spots would not stay uniform in front of it if it reflected them: a
-/// mirror image in it is smaller or larger than what it shows. Walls that lean must reflect, or spots that only climb
-/// would hardly come to those that move away from them.
-bool is_upright(const Vector3& normal) { return std::abs(normal.z()) < 1e-9; }
-
 }  // namespace
 
 BodyContainer::BodyContainer(const Outlets& outlets, const SpotBuffers& buffers, const Periodic& periodic)
@@ -65,6 +60,19 @@ std::optional<Vector3> BodyContainer::reflect_spot(const Vector3& start, const V
   return end;
 }
 
+/// Is this an upright wall that is curved? Spots would not stay uniform in front of it if it reflected them: a mirror
+/// image in it is smaller or larger than what it shows. Walls that lean must reflect, or spots that only climb would
+/// hardly come to those that move away from them. `place` is closer to the wall than `length`.
+bool BodyContainer::is_curved_and_upright(const Vector3& place, const Vector3& normal, double length) const {
+  constexpr double aside = 1e-3, alike = 1e-8;  // a wall with a radius of 1e4 lengths is flat
+  if (std::abs(normal.z()) > alike) return false;
+  const Vector3 along(-aside * length * normal.y(), aside * length * normal.x(), 0.0);
+  for (const Vector3& beside : {Vector3(place + along), Vector3(place - along)})
+    if (const auto wall = nearest_wall(beside, 2.0 * length); wall && (wall->normal - normal).norm() < alike)
+      return false;
+  return true;
+}
+
 std::optional<Vector3> BodyContainer::reflect_in_cell(const Vector3& start, const Vector3& target) const {
   constexpr int rounds = 8;
   // A mirror makes a step longer only by what the start is closer to the wall than the buffer.
@@ -75,15 +83,18 @@ std::optional<Vector3> BodyContainer::reflect_in_cell(const Vector3& start, cons
     if ((position - start).norm() > longest) break;
     if (meets_base(start, position)) break;
     if (const auto wall = first_wall(start, position)) {
-      if (wall->normal.isZero() || is_upright(wall->normal)) break;
-      const double behind = wall->normal.dot(start + wall->share * (position - start) - position);
+      if (wall->normal.isZero()) break;
+      const Vector3 met = start + wall->share * (position - start);
+      const double inside = 1e-3 * longest;
+      if (is_curved_and_upright(met + inside * wall->normal, wall->normal, 2.0 * inside)) break;
+      const double behind = wall->normal.dot(met - position);
       position += 2.0 * (buffers_.side + behind) * wall->normal;
       continue;
     }
     if (position.z() <= outlets_.height()) return position;
     const auto close = nearest_wall(position, buffers_.side);
     if (!close) return position;
-    if (is_upright(close->normal)) break;
+    if (is_curved_and_upright(position, close->normal, buffers_.side)) break;
     position += 2.0 * (buffers_.side - close->distance) * close->normal;
   }
   return std::nullopt;

@@ -32,6 +32,7 @@ class BodyContainer : public Container {
   std::optional<Vector3> reflect_in_cell(const Vector3& start, const Vector3& target) const;
   std::optional<WallOnPath> first_wall_in_cell(const Vector3& from, const Vector3& to) const;
   bool meets_base(const Vector3& from, const Vector3& to) const;
+  bool is_curved_and_upright(const Vector3& place, const Vector3& normal, double length) const;
 
   Outlets outlets_;
   Periodic periodic_;
