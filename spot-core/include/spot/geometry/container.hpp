@@ -52,7 +52,7 @@ class Container {
   virtual std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const = 0;
 
   /// Where a spot at `start` that wants to step to `target` ends, at least its buffer away from each wall, if it was
-  /// so before. The step is straight, and no wall lies across it. Walls of a box and walls that lean reflect it. Where
+  /// so before. The step is straight, and no wall lies across it. Walls that are flat or lean reflect it. Where
   /// another wall is too close, or it is too narrow for that, only its upward part is taken, and no step at all where
   /// that would meet a wall. So spots that are uniform stay so in every shape that is as wide at each height.
   Vector3 keep_spot_inside(const Vector3& start, const Vector3& target) const;
