@@ -158,7 +158,8 @@ def test_a_silo_that_runs_empty(tmp_path):
     """Drained to the last grain; a run more changes nothing and is no error."""
     few = [(0.0, 0.0, 0.6), (1.1, 0.0, 0.6), (0.0, 1.1, 0.6)]
     write_data(tmp_path / "packing.data", few)
-    screen = run_ok(deck(fix=FIX.replace("influence 1e-2", "influence 0.1"), run="run 60\nrun 5"), tmp_path)
+    fix = FIX.replace("influence 1e-2", "influence 0.1").replace("injection 100", "injection 30")
+    screen = run_ok(deck(fix=fix, run="run 60\nrun 5"), tmp_path)
     log = thermo(screen)
     assert log["Atoms"][-1] == 0
     assert log[DRAINED][-1] == 3
