@@ -25,6 +25,17 @@ def frame_text(timestep, ids, positions, columns="id x y z", before="", box=((-1
             f"ITEM: BOX BOUNDS ff ff ff\n{bounds}ITEM: ATOMS {columns} \n{rows}")
 
 
+def write_frames(folder, frames, scene, columns=()):
+    """Dumps of Frames with the columns of ``extra`` that are named, and scene.json, in a folder that is made; returns it."""
+    folder.mkdir(exist_ok=True)
+    folder.joinpath("scene.json").write_text(json.dumps(scene))
+    for frame in frames:
+        extra = [(name, frame.extra[name]) for name in columns]
+        folder.joinpath(f"drain.{frame.timestep}.dump").write_text(
+            frame_text(frame.timestep, frame.ids, frame.positions, " ".join(["id x y z", *columns]), extra=extra))
+    return folder
+
+
 def write_text(path, text):
     """Write plain text, or gzip or zstd if the name says so; returns the path as text."""
     compress = {".gz": gzip.compress, ".zst": zstandard.compress}.get(path.suffix, bytes)

@@ -12,6 +12,7 @@ from spot_analysis.base.errors import SceneError
 from spot_analysis.reading.frame import Frame
 from spot_analysis.reading.scene import Scene, scene_of
 from spot_analysis.statistics import box_flow
+from synthetic import write_frames
 
 # d = 2, tau = 1
 ONE = Scene(diameter=2.0, gravity=2.0, timestep=0.5, half_width_x=40.0, half_depth_y=8.0, orifice_radius=8.0)
@@ -67,14 +68,8 @@ def test_too_short_an_interval_is_refused():
 
 
 def test_the_command_compares_and_keeps_statistics(tmp_path):
-    run, kept = tmp_path / "run", tmp_path / "kept.json"
-    run.mkdir()
-    run.joinpath("scene.json").write_text(json.dumps(SCENE.as_dict()))
-    for frame in falling_frames(lambda x: 0.5 * (x > 0), count=800):
-        rows = "\n".join(f"{i} {x:.6f} {y:.6f} {z:.6f}" for i, (x, y, z) in zip(frame.ids, frame.positions))
-        run.joinpath(f"drain.{frame.timestep}.dump").write_text(
-            f"ITEM: TIMESTEP\n{frame.timestep}\nITEM: NUMBER OF ATOMS\n{len(frame.ids)}\nITEM: BOX BOUNDS ff ff ff\n"
-            f"-40 40\n-8 8\n-10 100\nITEM: ATOMS id x y z\n{rows}\n")
+    run = write_frames(tmp_path / "run", falling_frames(lambda x: 0.5 * (x > 0), count=800), SCENE.as_dict())
+    kept = tmp_path / "kept.json"
     options = ("--from", 2, "--to", 12)
     said = script("box.py", run, *options, "-o", kept)
     assert said.returncode == 0, said.stderr

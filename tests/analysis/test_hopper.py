@@ -12,6 +12,7 @@ from spot_analysis.base.errors import SceneError
 from spot_analysis.reading.axial_scene import AxialScene, load_axial_scene
 from spot_analysis.reading.frame import Frame
 from spot_analysis.statistics import axial_flow
+from synthetic import write_frames
 
 SCENE = AxialScene(diameter=2.0, gravity=2.0, timestep=0.5, orifice_radius=8.0, cylinder_radius=24.0, cone_height=20.0)  # tau = 1
 
@@ -74,14 +75,7 @@ def test_too_short_an_interval_is_refused():
 
 
 def write_run(folder):
-    folder.mkdir()
-    folder.joinpath("scene.json").write_text(json.dumps({**vars(SCENE), "program": "test"}))
-    for frame in falling_frames(lambda r: 0.5 + 0 * r, count=400):
-        rows = "\n".join(f"{i} {x:.6f} {y:.6f} {z:.6f}" for i, (x, y, z) in zip(frame.ids, frame.positions))
-        folder.joinpath(f"drain.{frame.timestep}.dump").write_text(
-            f"ITEM: TIMESTEP\n{frame.timestep}\nITEM: NUMBER OF ATOMS\n{len(frame.ids)}\nITEM: BOX BOUNDS ff ff ff\n"
-            f"-30 30\n-30 30\n-10 100\nITEM: ATOMS id x y z\n{rows}\n")
-    return folder
+    return write_frames(folder, falling_frames(lambda r: 0.5 + 0 * r, count=400), {**vars(SCENE), "program": "test"})
 
 
 def test_the_command_compares_and_keeps_statistics(tmp_path):

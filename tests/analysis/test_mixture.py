@@ -12,6 +12,7 @@ from spot_analysis.reading.scene import Scene
 from spot_analysis.statistics import mixture
 from spot_analysis.statistics.lacey import lacey_index
 from spot_analysis.statistics.surface_share import surface_share
+from synthetic import write_frames
 
 SCENE = Scene(diameter=2.0, gravity=2.0, timestep=0.5, half_width_x=20.0, half_depth_y=8.0, orifice_radius=8.0)  # tau = 1
 SMALL, LARGE = 0.8, 1.2  # radii
@@ -107,15 +108,7 @@ def test_input_that_does_not_fit():
 
 
 def write_run(folder):
-    folder.mkdir()
-    folder.joinpath("scene.json").write_text(json.dumps(SCENE.as_dict()))
-    for frame in falling_frames(count=900):
-        rows = "\n".join(f"{i} {x:.6f} {y:.6f} {z:.6f} {radius}"
-                         for i, (x, y, z), radius in zip(frame.ids, frame.positions, frame.extra["radius"]))
-        folder.joinpath(f"drain.{frame.timestep}.dump").write_text(
-            f"ITEM: TIMESTEP\n{frame.timestep}\nITEM: NUMBER OF ATOMS\n{len(frame.ids)}\nITEM: BOX BOUNDS ff ff ff\n"
-            f"-20 20\n-8 8\n-10 100\nITEM: ATOMS id x y z radius\n{rows}\n")
-    return folder
+    return write_frames(folder, falling_frames(count=900), SCENE.as_dict(), ("radius",))
 
 
 def test_the_command_compares_and_keeps_statistics(tmp_path):

@@ -13,6 +13,7 @@ from spot_analysis.reading.frame import Frame
 from spot_analysis.reading.scene import Scene
 from spot_analysis.statistics import axial_flow, box_flow, mixture
 from spot_analysis.statistics.passages import drained, residence_times, snapshots_of
+from synthetic import write_frames
 
 # d = 2, tau = 1
 HOPPER = AxialScene(diameter=2.0, gravity=2.0, timestep=0.5, orifice_radius=8.0, cylinder_radius=24.0, cone_height=20.0)
@@ -89,13 +90,8 @@ def test_other_columns_are_no_counts():
 
 
 def test_the_command_reads_the_column(tmp_path):
-    tmp_path.joinpath("scene.json").write_text(json.dumps(vars(HOPPER)))
-    for frame in round_frames(times=range(0, 25, 4), count=1000, speed=5.0):  # half of them between two frames
-        rows = "\n".join(f"{i} {x:.6f} {y:.6f} {z:.6f} {rounds:.0f}"
-                         for i, (x, y, z), rounds in zip(frame.ids, frame.positions, frame.extra["f_bed[5]"]))
-        tmp_path.joinpath(f"bed.{frame.timestep}.dump").write_text(
-            f"ITEM: TIMESTEP\n{frame.timestep}\nITEM: NUMBER OF ATOMS\n{len(frame.ids)}\nITEM: BOX BOUNDS ff ff ff\n"
-            f"-30 30\n-30 30\n-10 100\nITEM: ATOMS id x y z f_bed[5]\n{rows}\n")
+    halves = round_frames(times=range(0, 25, 4), count=1000, speed=5.0)  # half of them between two frames
+    write_frames(tmp_path, halves, vars(HOPPER), ("f_bed[5]",))
     said = script("hopper.py", tmp_path, "--from", 4, "--to", 24, "-o", tmp_path / "found.json")
     assert said.returncode == 0, said.stderr
     assert json.loads((tmp_path / "found.json").read_text())["quantities"]["outflow"][0] == pytest.approx(125, rel=0.03)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is measured of a round container that drains to its end, on heaps whose angle is known."""
 
-import json
 import math
 
 import numpy as np
@@ -11,6 +10,7 @@ from conftest import script
 from spot_analysis.reading.axial_scene import AxialScene
 from spot_analysis.reading.frame import Frame
 from spot_analysis.statistics import round_heap
+from synthetic import write_frames
 
 FLAT = AxialScene(diameter=2.0, gravity=2.0, timestep=1.0, orifice_radius=8.0, cylinder_radius=24.0, cone_height=1e-15)  # tau = 1
 CONE = AxialScene(diameter=2.0, gravity=2.0, timestep=1.0, orifice_radius=8.0, cylinder_radius=24.0, cone_height=6.0)
@@ -97,19 +97,8 @@ def test_too_short_a_drainage_is_refused():
         round_heap.measure(draining(times=range(0, 12, 2)), FLAT, 4, 40)
 
 
-def write_run(folder):
-    folder.mkdir()
-    folder.joinpath("scene.json").write_text(json.dumps({**vars(FLAT), "program": "test"}))
-    for frame in draining():
-        rows = "\n".join(f"{i} {x:.6f} {y:.6f} {z:.6f}" for i, (x, y, z) in zip(frame.ids, frame.positions))
-        folder.joinpath(f"drain.{frame.timestep}.dump").write_text(
-            f"ITEM: TIMESTEP\n{frame.timestep}\nITEM: NUMBER OF ATOMS\n{len(frame.ids)}\nITEM: BOX BOUNDS ff ff ff\n"
-            f"-30 30\n-30 30\n-10 100\nITEM: ATOMS id x y z\n{rows}\n")
-    return folder
-
-
 def test_the_command_compares_and_keeps_statistics(tmp_path):
-    run, kept = write_run(tmp_path / "run"), tmp_path / "kept.json"
+    run, kept = write_frames(tmp_path / "run", draining(), {**vars(FLAT), "program": "test"}), tmp_path / "kept.json"
     said = script("round_heap.py", run, "--from", 4, "--to", 16, "-o", kept)
     assert said.returncode == 0 and "quantities" in said.stdout, said.stderr
     said = script("round_heap.py", kept, run, run, "--from", 4, "--to", 16, "--plot", tmp_path / "drainage.png")

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One command for any scene, and where the others send those that they don't measure."""
 
-import json
-
 import pytest
 
 import test_box
@@ -11,21 +9,9 @@ import test_mixture
 import test_passages
 from conftest import ANALYSIS, script
 from spot_analysis.commands import summary
+from synthetic import write_frames
 
 EXAMPLES = ANALYSIS.parent / "examples"
-
-
-def write_frames(folder, frames, scene, columns=()):
-    """Dumps with the columns of ``extra`` that are named, and scene.json."""
-    folder.mkdir()
-    folder.joinpath("scene.json").write_text(json.dumps(scene))
-    for frame in frames:
-        rows = "".join(" ".join(f"{value:.6g}" for value in (i, *place, *(frame.extra[name][row] for name in columns))) + "\n"
-                       for row, (i, place) in enumerate(zip(frame.ids, frame.positions)))
-        folder.joinpath(f"drain.{frame.timestep}.dump").write_text(
-            f"ITEM: TIMESTEP\n{frame.timestep}\nITEM: NUMBER OF ATOMS\n{len(frame.ids)}\nITEM: BOX BOUNDS ff ff ff\n"
-            f"-40 40\n-40 40\n-10 100\nITEM: ATOMS id x y z {' '.join(columns)}\n{rows}")
-    return folder
 
 
 @pytest.fixture(scope="module")

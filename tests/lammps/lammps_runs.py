@@ -110,6 +110,15 @@ def run_ok(text, folder, **options):
     return done.stdout
 
 
+def run_example(folder, name, out, launcher=(), **variables):
+    """The screen output of a deck of examples/, with its variables, that writes to the folder `out`."""
+    words = [word for key, value in {"out": out, **variables}.items() for word in ("-var", key, str(value))]
+    done = subprocess.run([*launcher, FRONT_END, "-in", name, "-log", "none", "-nocite", *words], cwd=ROOT / "examples" / folder,
+                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    return done.stdout
+
+
 def drain(folder, program=FRONT_END, launcher=(), **parts):
     """The dump, as bytes, of a deck made of these parts."""
     folder.mkdir(exist_ok=True)

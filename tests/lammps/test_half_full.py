@@ -2,24 +2,17 @@
 """examples/half-full/in.half_full_spot: a flat base to its end, cones a short stretch."""
 
 import json
-import os
 import subprocess
 import sys
 
 import pytest
 
-from lammps_runs import FRONT_END, PLUGIN, ROOT
-
-HALF_FULL = ROOT / "examples" / "half-full"
+from lammps_runs import ROOT, run_example
 
 
 def run_half_full(out, **variables):
-    """Run the deck; what the program said."""
-    words = [word for name, value in {"out": out, **variables}.items() for word in ("-var", name, str(value))]
-    done = subprocess.run([FRONT_END, "-in", "in.half_full_spot", "-log", "none", "-nocite", *words], cwd=HALF_FULL,
-                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-    return done.stdout
+    """What the program said."""
+    return run_example("half-full", "in.half_full_spot", out, **variables)
 
 
 def test_a_heap_stays_on_a_flat_base(tmp_path):

@@ -2,26 +2,19 @@
 """examples/hoppers/in.hopper_spot, a short stretch of it, on its real packings."""
 
 import json
-import os
 import re
-import subprocess
 
 import pytest
 import zstandard
 
-from lammps_runs import FRONT_END, PLUGIN, ROOT, needs_mpirun, on_ranks
+from lammps_runs import needs_mpirun, on_ranks, run_example
 from near_dem import assert_near_dem
-
-HOPPERS = ROOT / "examples" / "hoppers"
 
 
 def run_hopper(out, launcher=(), **variables):
     """The last snapshot of the deck, as bytes, and what the program said."""
-    words = [word for name, value in {"out": out, "time": 0.035, **variables}.items() for word in ("-var", name, str(value))]
-    done = subprocess.run([*launcher, FRONT_END, "-in", "in.hopper_spot", "-log", "none", "-nocite", *words], cwd=HOPPERS,
-                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-    return zstandard.open(out / "drain.4.dump.zst", "rb").read(), done.stdout
+    said = run_example("hoppers", "in.hopper_spot", out, launcher, **{"time": 0.035, **variables})
+    return zstandard.open(out / "drain.4.dump.zst", "rb").read(), said
 
 
 @needs_mpirun

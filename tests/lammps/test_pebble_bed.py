@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """examples/pebble-bed/in.pebble_bed, a short stretch of it, and what its script refuses."""
 
-import os
 import subprocess
 import sys
 
 import pytest
 
-from lammps_runs import FRONT_END, PLUGIN, ROOT, thermo
+from lammps_runs import ROOT, run_example, thermo
 
 PEBBLES = ROOT / "examples" / "pebble-bed"
 
@@ -15,11 +14,7 @@ PEBBLES = ROOT / "examples" / "pebble-bed"
 @pytest.fixture(scope="module")
 def short_run(tmp_path_factory):
     out = tmp_path_factory.mktemp("bed") / "post"
-    words = ["-var", "out", str(out), "-var", "turnovers", "0.04"]
-    done = subprocess.run([FRONT_END, "-in", "in.pebble_bed", "-log", "none", "-nocite", *words], cwd=PEBBLES,
-                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-    return done.stdout, out
+    return run_example("pebble-bed", "in.pebble_bed", out, turnovers=0.04), out
 
 
 def test_pebbles_go_round(short_run):

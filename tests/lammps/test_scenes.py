@@ -2,25 +2,20 @@
 """examples/periodic-slot, examples/two-outlets and examples/benchmark-silo, a short stretch of each, on their real packings."""
 
 import json
-import os
-import subprocess
 
 import numpy as np
 import pytest
 import zstandard
 
-from lammps_runs import FRONT_END, PLUGIN, ROOT, read_dump
+from lammps_runs import read_dump, run_example
 from near_dem import assert_near_dem
 
 
 def run_deck(folder, deck, out, **variables):
     """Snapshots of the deck, and what the program said."""
-    words = [word for name, value in {"out": out, **variables}.items() for word in ("-var", name, str(value))]
-    done = subprocess.run([FRONT_END, "-in", deck, "-log", "none", "-nocite", *words], cwd=ROOT / "examples" / folder,
-                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    said = run_example(folder, deck, out, **variables)
     frames = [read_dump(path)[0] for path in sorted(out.glob("drain.*.dump"), key=lambda path: int(path.suffixes[-2][1:]))]
-    return [frame for _, frame in frames], done.stdout
+    return [frame for _, frame in frames], said
 
 
 def test_the_slot_drains_by_its_law_and_only_through_the_slot(tmp_path):

@@ -3,15 +3,13 @@
 
 import gzip
 import json
-import os
 import re
-import subprocess
 
 import numpy as np
 import pytest
 
-from lammps_runs import (BOX, FIX, FRONT_END, HEIGHT, LOAD_SPOT, PLUGIN, ROOT, deck, drain, error_of, lattice, needs_mpirun, on_ranks,
-                         positions, read_dump, run_ok, run_text, thermo, write_data)
+from lammps_runs import (BOX, FIX, HEIGHT, LOAD_SPOT, ROOT, deck, drain, error_of, lattice, needs_mpirun, on_ranks,
+                         positions, read_dump, run_example, run_ok, run_text, thermo, write_data)
 from near_dem import assert_near_dem
 
 ALL = FIX + " volume 77 dilation 0.03"
@@ -240,11 +238,8 @@ def test_grains_keep_their_size(tmp_path, ranks):
 @pytest.mark.parametrize("ratio, said", [(1.5, "up to 0.00389"), (2, "up to 0.00495")])
 def test_the_example_drains(tmp_path, ratio, said):
     """From 2 to 4 tau: what Beverloo's law predicts is 144 grains of mean volume, give or take the births of spots."""
-    words = ["-var", "ratio", str(ratio), "-var", "tau_run", "10", "-var", "out", str(tmp_path)]
-    done = subprocess.run([FRONT_END, "-in", "in.bidisperse", "-log", "none", "-nocite", *words], cwd=MIXTURE.parent,
-                          env={**os.environ, "SPOT_PLUGIN": PLUGIN}, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-    assert said in done.stdout and "Beverloo's law predicts an outflow of 4" in done.stdout
+    printed = run_example("bidisperse", "in.bidisperse", tmp_path, ratio=ratio, tau_run=10)
+    assert said in printed and "Beverloo's law predicts an outflow of 4" in printed
     frames = [read_dump(tmp_path / f"drain.{step}.dump")[0][1] for step in (4, 8)]
     volume = [(frame["radius"]**3).sum() / (D / 2)**3 for frame in frames]
     assert volume[0] - volume[1] == pytest.approx(144, rel=0.15)

@@ -100,35 +100,22 @@ TEST(SpotsAtLeaningWallsStatistical, WithoutADriftTheyStayUniform) {
   EXPECT_LT(scenes::deviation_from_equal_counts(ends(silo, walks)), scenes::bound);
 }
 
+/// Of spots that climb from over the orifice, how many end above `z`, in a silo less an obstacle.
+int above(double z, const spot::Solid& obstacle, int number, int steps) {
+  const ShapedContainer silo(spot::block({-12, -4, 0}, {12, 4, height}) & ~obstacle, orifice, buffers);
+  const auto anywhere = [](const Vector3&) { return true; };
+  const auto bin = [z](const Vector3& place) { return place.z() > z ? 0 : -1; };
+  return ends(silo, {{-2.0, -2.0, 4.0}, {2.0, 2.0, 4.0}, 0.0, number, steps, anywhere, bin, 1})[0];
+}
+
 /// A beam across the silo, 6 d wide, right over the orifice: spots go sideways under it until they are past it.
 TEST(SpotsUnderRoofsStatistical, FindTheirWayAround) {
-  const ShapedContainer silo(spot::block({-12, -4, 0}, {12, 4, height}) & ~spot::block({-3, -5, 10}, {3, 5, 13}),
-                             orifice, buffers);
-  const Walks walks{{-2.0, -2.0, 4.0},
-                    {2.0, 2.0, 4.0},
-                    0.0,
-                    2000,
-                    200,
-                    [](const Vector3&) { return true; },
-                    [](const Vector3& place) { return place.z() > 13.0 ? 1 : 0; },
-                    2};
-  const std::vector<int> counts = ends(silo, walks);
-  EXPECT_EQ(counts[0], 0) << "are held below the beam, of 2000";
+  EXPECT_EQ(above(13.0, spot::block({-3, -5, 10}, {3, 5, 13}), 2000, 200), 2000);
 }
 
 /// Where there is no way around, spots stay, and none gets through.
 TEST(SpotsUnderRoofsStatistical, DoNotGetThroughALid) {
-  const ShapedContainer silo(spot::block({-12, -4, 0}, {12, 4, height}) & ~spot::block({-13, -5, 10}, {13, 5, 13}),
-                             orifice, buffers);
-  const Walks walks{{-2.0, -2.0, 4.0},
-                    {2.0, 2.0, 4.0},
-                    0.0,
-                    500,
-                    100,
-                    [](const Vector3&) { return true; },
-                    [](const Vector3& place) { return place.z() > 10.0 ? 1 : 0; },
-                    2};
-  EXPECT_EQ(ends(silo, walks)[1], 0);
+  EXPECT_EQ(above(10.0, spot::block({-13, -5, 10}, {13, 5, 13}), 500, 100), 0);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 import numpy as np
 
 from ..base.errors import AnalysisError
+from .snapping import NEAR
 
-BEYOND = 0.02  # d that an outlet may reach beyond a wall: as well as a fit finds walls
 RING = 0.5  # d of floor around the outlet at the lower end of a cone
 ABOVE = 2.0  # d between the outlet's height and the lowest grain
 
@@ -16,7 +16,7 @@ def require_inside(walls, orifice, diameter):
     gaps = [plane[3] - x * plane[0] - y * plane[1] - radius for plane in walls.planes]
     gaps += [edge - np.hypot(x - walls.axis[0], y - walls.axis[1]) - radius for edge in _radii(walls, z)]
     nearest = int(np.argmin(gaps))
-    if gaps[nearest] < -BEYOND * diameter:
+    if gaps[nearest] < -NEAR * diameter:
         at = f", whose radius is {_radii(walls, z)[nearest]:.6g} at its height" if walls.axis else ""
         place = " ".join(f"{value + 0.0:.6g}" for value in orifice)
         raise AnalysisError(f"--orifice {place} (x y z R): reaches {-gaps[nearest] / diameter:.2f} d beyond "

@@ -52,8 +52,7 @@ KEYS = (*(f.name for f in fields(AxialScene)), "cone_angle")
 
 def load_axial_scene(source):
     """The scene of the dumps ``source`` (a folder, file or wildcard); raises SceneError naming the file, and what is
-    missing, unknown
-    or bad."""
+    missing, unknown or bad."""
     require_existence(source)
     path = path_beside(source)
     values = read_object(path, f"the keys {', '.join(NUMBERS)}")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Quantities, name -> [value, standard error], of one run as a table, or of a reference and several runs side by
-side."""
+"""Quantities, name -> [value, standard error], of one run as a table, or of several side by side with a reference."""
 
 import math
 

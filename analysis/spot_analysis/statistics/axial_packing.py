@@ -2,8 +2,7 @@
 """Packing fraction of a round hopper: volume of grains, cut off where a layer ends, over that of the room inside its
 walls.
 
-Lengths are in d. Layers that the free surface comes down into are left out: what is above it would count as a loose
-packing.
+Lengths are in d. Layers that the free surface comes down into are left out: what is above it would count as loose.
 """
 
 import numpy as np

@@ -26,8 +26,7 @@ def measure(frames, scene, start, end):
     start, end : the interval, tau
 
     With one outlet profiles are along |x|, otherwise along x. Raises ValueError if fewer than three snapshots lie in
-    the interval, or
-    if they do not tell what leaves.
+    the interval, or if they do not tell what leaves.
     """
     snapshots = snapshots_of(frames, scene)
     inside = within(snapshots, start, end)

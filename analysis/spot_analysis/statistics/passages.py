@@ -3,10 +3,8 @@
 included.
 
 Grains that go round (fix spot, recirculate) leave at the outlet and come in again on top. How often each has done so is
-read off a
-column of the dumps, f_ID[5] of fix spot with peratom. Without it a grain has gone round that has risen by more than
-``JUMP``.
-Lengths are in d, times in tau.
+read off a column of the dumps, f_ID[5] of fix spot with peratom. Without it a grain has gone round that has risen by
+more than ``JUMP``. Lengths are in d, times in tau.
 """
 
 from dataclasses import dataclass
@@ -123,8 +121,7 @@ def falls(before, after):
 
 def residence_times(snapshots, level):
     """For each pair of successive snapshots: before, after, indices in the first of grains that leave then, (k,), and
-    for how long,
-    tau, they have been below a level. Grains that started below it are left out until they have gone round."""
+    for how long, tau, they have been below a level. Grains that started below it are left out until they have gone round."""
     ids = np.unique(np.concatenate([s.ids for s in snapshots]))
     passed = np.full(len(ids), np.nan)
     for before, after in zip(snapshots, snapshots[1:]):

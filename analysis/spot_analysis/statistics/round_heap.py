@@ -10,7 +10,7 @@ import numpy as np
 
 from .axial_flow import mean_of
 from .fits import fit_line
-from .passages import common, snapshots_of
+from .passages import common, drained, snapshots_of
 
 RING = 1.0  # d, width of the rings of a profile
 COLUMN = 2.0  # d, along a ring, of the columns whose highest grains are the surface
@@ -92,24 +92,19 @@ def measure(frames, scene, start, end):
         raise ValueError(f"the drainage ends at {times[-1] if len(runs) else 0:g} tau, {max(end, AFTER):g} are needed")
     counts = np.array([np.count_nonzero(one.positions[:, 2] > 0) for one in runs])
     inside = [one for one in runs if start - 1e-9 <= one.time <= end + 1e-9]
-    found = {"outflow": mean_of([_left(a, b) / (b.time - a.time) for a, b in zip(inside, inside[1:])])}
+    found = {"outflow": mean_of([drained(a, b).sum() / (b.time - a.time) for a, b in zip(inside, inside[1:])])}
     for time in np.arange(0.0, times[-1] + 1e-9, LEFT_EVERY):
         found[f"left_{time:g}tau"] = [float(np.interp(time, times, counts)), math.nan]
     found["left_end"] = [float(counts[-1]), math.nan]
     found["over_after"] = [over_after(times, counts), math.nan]
     calm = runs[int(np.argmin(np.abs(times - (times[-1] - AFTER))))]
-    found["left_in_last_20tau"] = [float(_left(calm, runs[-1])), math.nan]
+    found["left_in_last_20tau"] = [float(drained(calm, runs[-1]).sum()), math.nan]
     found["crept_in_last_20tau"] = [crept(calm, runs[-1]), math.nan]
     for time in PROFILES:
         if time <= times[-1] + 1e-9:
             found.update(_surface_of(runs[int(np.argmin(np.abs(times - time)))], scene, f"{time:g}tau"))
     found.update(_surface_of(runs[-1], scene, "end"))
     return found
-
-
-def _left(before, after):
-    """How many grains have gone through the outlet; none come in again."""
-    return np.count_nonzero(before.positions[:, 2] > 0) - np.count_nonzero(after.positions[:, 2] > 0)
 
 
 def _surface_of(snapshot, scene, name):

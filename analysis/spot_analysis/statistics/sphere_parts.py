@@ -13,8 +13,7 @@ def volume_inside(positions, low, high, radius_at):
     positions : (n, 3); radius_at : function of heights, an array of any shape
 
     Horizontal cuts of a grain are circles, and what is inside of them is a lens. It is integrated over the height by
-    Gauss'
-    rule, exactly where the grain is cut by no side.
+    Gauss' rule, exactly where the grain is cut by no side.
     """
     axis, z = np.hypot(positions[:, 0], positions[:, 1]), positions[:, 2]
     bottom, top = np.maximum(low, z - 0.5), np.minimum(high, z + 0.5)

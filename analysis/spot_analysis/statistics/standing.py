@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What stands still: grains that hardly come down, and how wide the layer is at the wall of a hopper in which they
-don't.
+"""What stands still: grains that hardly come down, and the layer of them at the wall of a hopper.
 
 Lengths are in d.
 """
@@ -25,8 +24,8 @@ def still_share(first, last):
 
 def stagnant_layer(pairs, height, radius):
     """[width, standard error] of the layer at the wall in which the mean fall is below ``SHARE`` of that within
-    ``AXIS`` of the axis,
-    at a height where the inside has a radius. 0 where all grains move; not a number where none does."""
+    ``AXIS`` of the axis, at a height where the inside has a radius. 0 where all grains move; not a number where none
+    does."""
     blocks = min(BLOCKS, len(pairs) // LEAST)
     sums = np.array([_rings(*pair, height, radius) for pair in pairs])  # pairs, counts and falls, rings
     error = float("nan")
