@@ -59,6 +59,25 @@ def test_a_packing_goes_on_over_a_flat_base(hopper, tmp_path):
     assert json.loads((tmp_path / "drain" / "scene.json").read_text())["cone_height"] == pytest.approx(0, abs=1e-12)
 
 
+def test_grains_come_in_again_above_the_bed(hopper, tmp_path):
+    (tmp_path / "packed.restart").write_bytes((hopper / "packed.restart").read_bytes())
+    again = {**HOPPER, "rest": 0, "out": tmp_path}
+    run_ok("hopper", "in.recirculate", tau_of_flow=8, **again)
+    frames = [frame for step in range(0, 40001, 10000) for _, frame in read_dump(tmp_path / "recirculate" / f"drain.{step}.dump")]
+    assert all((frame["id"] == frames[0]["id"]).all() and len(frame["id"]) == 800 for frame in frames)
+    rises = np.diff([frame["z"] for frame in frames], axis=0) / DIAMETER
+    # About 50 leave in a tau; each comes in 20 d above the bed, and none rises otherwise.
+    assert 150 < np.count_nonzero(rises > 10) < 600
+    assert all(beyond_walls(frame) < 0.03 and (frame["z"] > -6 * DIAMETER).all() for frame in frames)
+
+
+def test_grains_come_in_again_below_the_ends_of_the_walls(hopper, tmp_path):
+    low = {**HOPPER, "rest": 0, "pour_height": 20, "out": tmp_path}
+    run_ok("hopper", "in.from_data", data=hopper / "packed.data", settle=0.1, **low)
+    said = run("hopper", "in.recirculate", tau_of_flow=1, **low)
+    assert "raise pour_height" in said.stdout + said.stderr
+
+
 @pytest.mark.parametrize("deck, change, said", [
     ("in.pour", {"angle": 91}, "angle is 91 degrees"),
     ("in.pour", {"orifice": 16}, "orifice is 16 d"),
@@ -66,7 +85,8 @@ def test_a_packing_goes_on_over_a_flat_base(hopper, tmp_path):
     ("in.pour", {"flux": 40000}, "more than 0.2"),
     ("in.from_data", {"settle": -1}, "settle is -1 tau"),
     ("in.from_data", {"data": "none.data"}, "no data file none.data"),
-    ("in.drain", {}, "run in.pour first")])
+    ("in.drain", {}, "run in.pour first"),
+    ("in.recirculate", {}, "run in.pour first")])
 def test_mistakes_are_named(tmp_path, deck, change, said):
     done = run("hopper", deck, out=tmp_path, **{**HOPPER, **change})
     assert said in done.stdout + done.stderr

@@ -8,8 +8,6 @@ import pytest
 
 from lammps_runs import ROOT, run_example, thermo
 
-PEBBLES = ROOT / "examples" / "pebble-bed"
-
 
 @pytest.fixture(scope="module")
 def short_run(tmp_path_factory):
@@ -22,6 +20,12 @@ def test_pebbles_go_round(short_run):
     assert (log["Atoms"] == 12000).all() and log["f_bed[3]"][-1] > 300 and log["f_bed[6]"].max() < 0.02 * 0.06
 
 
-def test_the_script_reads_its_dumps(short_run):
-    done = subprocess.run([sys.executable, "-B", "residence.py", short_run[1]], cwd=PEBBLES, capture_output=True, text=True, timeout=100)
-    assert done.returncode != 0 and "0.04 turnovers, but two are needed" in done.stderr
+def test_the_analysis_reads_its_dumps(short_run):
+    done = subprocess.run([sys.executable, "-B", ROOT / "analysis" / "turnovers.py", short_run[1]], capture_output=True, text=True,
+                          timeout=100)
+    assert done.returncode == 1 and "0.04 turnovers, but --to is 3" in done.stderr
+
+
+def test_the_steep_funnel_starts(tmp_path):
+    log = thermo(run_example("pebble-bed", "in.pebble_bed", tmp_path / "post", turnovers=0.005, angle=30, outflow=84))
+    assert (log["Atoms"] == 12000).all() and log["f_bed[3]"][-1] > 20

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "scenes.hpp"
@@ -98,6 +99,56 @@ TEST(SpotsAtLeaningWallsStatistical, WithoutADriftTheyStayUniform) {
                     },
                     8};
   EXPECT_LT(scenes::deviation_from_equal_counts(ends(silo, walks)), scenes::bound);
+}
+
+/// Without a drift, in a hopper that widens upwards from 4 d, whose walls lean by an angle: its inside is scaled with
+/// the height, and so are the places in it in which walks that end 24 to 34 d up are counted.
+std::vector<int> ends_in_hopper(const spot::Solid& hopper, double slope, int number, std::size_t bins,
+                                const std::function<int(double, double)>& bin) {
+  const ShapedContainer container(hopper, orifice, buffers);
+  const double gap = buffers.side * std::hypot(1.0, slope), wide = 4.0 + 60.0 * slope;
+  const auto scaled = [=](const Vector3& place) -> Vector3 { return place / (4.0 + place.z() * slope - gap); };
+  const auto bin_of = [&](const Vector3& place) { return bin(scaled(place).x(), scaled(place).y()); };
+  return ends(container, {{-wide, -wide, 3.0},
+                          {wide, wide, 57.0},
+                          0.5,
+                          number,
+                          16,
+                          [&](const Vector3& place) { return bin_of(place) >= 0; },
+                          [&](const Vector3& place) { return place.z() > 24 && place.z() < 34 ? bin_of(place) : -1; },
+                          bins});
+}
+
+double sum(const std::vector<int>& counts) { return std::accumulate(counts.begin(), counts.end(), 0.0); }
+
+/// Mirrors in a cone are curved, but less than in a tube: the radius of curvature is that of the cone over the cosine.
+TEST(SpotsInConesStatistical, WithoutADriftTheyStayUniform) {
+  for (const double angle : {scenes::pi / 6.0, scenes::pi / 3.0}) {
+    const double slope = std::tan(angle);
+    const auto ring = [](double x, double y) { return x * x + y * y < 1 ? static_cast<int>(8 * (x * x + y * y)) : -1; };
+    const auto cone = spot::cone_between({0, 0, 0}, 4.0, {0, 0, 60}, 4.0 + 60.0 * slope);
+    const auto counts = ends_in_hopper(cone, slope, 150000, 8, ring);
+    EXPECT_LT(scenes::deviation_from_equal_counts(counts), scenes::bound);
+  }
+}
+
+/// Four flat walls that lean. Into the corners, where a mirror follows on another, some steps find no way: a tenth
+/// fewer are there.
+TEST(SpotsInPyramidsStatistical, WithoutADriftTheyStayUniform) {
+  for (const double angle : {scenes::pi / 6.0, scenes::pi / 3.0}) {
+    const double slope = std::tan(angle), c = std::cos(angle), s = std::sin(angle);
+    const double wide = 4.0 + 60.0 * slope;
+    spot::Solid pyramid = spot::block({-wide, -wide, 0}, {wide, wide, 60});
+    for (const Vector3& side : {Vector3(1, 0, 0), Vector3(-1, 0, 0), Vector3(0, 1, 0), Vector3(0, -1, 0)})
+      pyramid = pyramid & spot::half_space(4.0 * side, -c * side + s * Vector3(0, 0, 1));
+    const auto cell = [](double x, double y) {
+      return std::max(std::abs(x), std::abs(y)) < 1 ? 8 * static_cast<int>(4 * (x + 1)) + static_cast<int>(4 * (y + 1))
+                                                    : -1;
+    };
+    const auto counts = ends_in_hopper(pyramid, slope, 150000, 64, cell);
+    EXPECT_LT(scenes::deviation_from_equal_counts(counts), scenes::bound);
+    EXPECT_GT(counts[0] + counts[7] + counts[56] + counts[63], 0.8 * 4.0 / 64.0 * sum(counts));
+  }
 }
 
 /// Of spots that climb from over the orifice, how many end above `z`, in a silo less an obstacle.

@@ -11,14 +11,11 @@ from typing import Callable
 from ..base.errors import AnalysisError
 from ..report import quantity_table
 
-START = 10.0  # tau, default of --from
-
-
 @dataclass(frozen=True)
 class Kind:
     """A kind of scene and how it is measured.
 
-    what : its name; end : default of --to, tau
+    what : its name; start, end : defaults of --from and --to, in the unit
     measure(folder, start, end) : quantities of dumps; raises ValueError where they do not suffice
     draw(path, reference, spot) : writes the plot, which shows ``drawn``
     """
@@ -28,17 +25,19 @@ class Kind:
     measure: Callable
     draw: Callable
     drawn: str = "profiles of the fall"
+    start: float = 10.0
+    unit: str = "tau"
 
 
-def parse_arguments(description, epilog, drawn, end):
-    """drawn : what --plot shows; end : default of --to, in words"""
+def parse_arguments(description, epilog, drawn, start, end, unit="TAU"):
+    """drawn : what --plot shows; start, end : defaults of --from and --to, in words"""
     parser = argparse.ArgumentParser(description=description, epilog=epilog)
     parser.add_argument("runs", nargs="+", metavar="RUN",
                         help="folder of dumps with scene.json, or a file of --output; the first is what the others are "
                              "compared with, alone it is measured")
-    parser.add_argument("--from", dest="start", type=float, metavar="TAU",
-                        help=f"default: that of a file of --output, or {START:g}")
-    parser.add_argument("--to", dest="end", type=float, metavar="TAU",
+    parser.add_argument("--from", dest="start", type=float, metavar=unit,
+                        help=f"default: that of a file of --output, or {start}")
+    parser.add_argument("--to", dest="end", type=float, metavar=unit,
                         help=f"default: that of a file of --output, or {end}")
     parser.add_argument("--plot", metavar="FILE.png", help=f"draws {drawn}")
     parser.add_argument("-o", "--output", metavar="FILE.json", help="keeps the statistics of the first run")
@@ -50,13 +49,13 @@ def parse_arguments(description, epilog, drawn, end):
     return options
 
 
-def choose_interval(options, default_end):
+def choose_interval(options, kind):
     """Fills in the ends of the interval that were not given: those of the first file of statistics, or the defaults."""
-    stored = next((read_stored(run)["interval"] for run in options.runs if is_stored(run)), [START, default_end])
+    stored = next((read_stored(run)["interval"] for run in options.runs if is_stored(run)), [kind.start, kind.end])
     options.start = stored[0] if options.start is None else options.start
     options.end = stored[1] if options.end is None else options.end
     if not 0 <= options.start < options.end:
-        raise AnalysisError(f"the interval {options.start:g} to {options.end:g} tau: "
+        raise AnalysisError(f"the interval {options.start:g} to {options.end:g} {kind.unit}: "
                             "--from must not be negative, and below --to")
 
 
@@ -76,18 +75,17 @@ def read_stored(source):
         raise AnalysisError(f"{source}: no statistics of --output ({error})") from error
 
 
-def statistics(source, options, measure):
-    """Quantities of a folder of dumps, by measure(folder, start, end), or of a file that --output wrote, whose interval must be the
-    same."""
+def statistics(source, options, kind):
+    """Quantities of a folder of dumps, by kind.measure, or of a file that --output wrote, whose interval must be the same."""
     if not is_stored(source):
         try:
-            return measure(source, options.start, options.end)
+            return kind.measure(source, options.start, options.end)
         except ValueError as error:
             raise AnalysisError(f"{source}: {error}") from error
     stored = read_stored(source)
     start, end = stored["interval"]
     if [start, end] != [options.start, options.end]:
-        raise AnalysisError(f"{source}: holds the interval {start:g} to {end:g} tau, "
+        raise AnalysisError(f"{source}: holds the interval {start:g} to {end:g} {kind.unit}, "
                             f"not {options.start:g} to {options.end:g}")
     return stored["quantities"]
 
@@ -104,11 +102,11 @@ def keep(quantities, options):
 
 def compare(options, kind):
     """Measures the runs, all of a Kind, and says what a command says of them."""
-    choose_interval(options, kind.end)
-    reference, *runs = [statistics(run, options, kind.measure) for run in options.runs]
+    choose_interval(options, kind)
+    reference, *runs = [statistics(run, options, kind) for run in options.runs]
     keep(reference, options)
     spot = quantity_table.pooled(runs) if runs else None
-    interval = f"{options.start:g} to {options.end:g} tau"
+    interval = f"{options.start:g} to {options.end:g} {kind.unit}"
     print("\n".join(quantity_table.lines(interval, options.runs[0], reference, spot, len(runs))))
     if options.plot:
         kind.draw(options.plot, reference, spot)
@@ -117,4 +115,4 @@ def compare(options, kind):
 
 def run_command(description, kind, epilog="Lengths are in d, times in tau."):
     """What a command does that knows one kind of scene."""
-    compare(parse_arguments(description, epilog, kind.drawn, f"{kind.end:g}"), kind)
+    compare(parse_arguments(description, epilog, kind.drawn, f"{kind.start:g}", f"{kind.end:g}", kind.unit.upper()), kind)

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Measure what a scene has, or compare it, whatever the scene: hopper.py, box.py or mixture.py, as scene.json and the
-sizes of the grains tell; round_heap.py where its statistics are among the runs."""
+sizes of the grains tell; round_heap.py or turnovers.py where its statistics are among the runs."""
 
 import numpy as np
 
 from ..base.errors import SceneError
 from ..reading.dump import read_frames
 from ..reading.scene import BOX_KEYS, HOPPER_KEYS, path_beside, read_values, require_existence
-from . import box, command_line, hopper, mixture, quantities, round_heap
+from . import box, command_line, hopper, mixture, quantities, round_heap, turnovers
 
-KINDS = (hopper.KIND, box.KIND, mixture.KIND, round_heap.KIND)
-ROUND = (hopper.KIND, round_heap.KIND)  # of one scene.json
+KINDS = (hopper.KIND, box.KIND, mixture.KIND, round_heap.KIND, turnovers.KIND)
+ROUND = (hopper.KIND, round_heap.KIND, turnovers.KIND)  # of one scene.json
 UNEQUAL = 1e-3  # relative difference of radii
 
 
@@ -39,6 +39,8 @@ def _kind_of_names(names):
         return mixture.KIND
     if "over_after" in names:
         return round_heap.KIND
+    if "never_drained" in names:
+        return turnovers.KIND
     return hopper.KIND if any(name.startswith("mass_flow_index") for name in names) else box.KIND
 
 
@@ -54,9 +56,10 @@ def common_kind(runs):
 
 
 def summarize():
-    default = "by the scene: " + ", ".join(f"{kind.end:g} of a {kind.what}" for kind in KINDS)
+    starts, ends = ("by the scene: " + ", ".join(f"{bound(kind):g} of a {kind.what}" for kind in KINDS)
+                    for bound in (lambda kind: kind.start, lambda kind: kind.end))
     options = quantities.parse_arguments(__doc__, "Lengths are in d, times in tau.",
-                                         "what the script for the scene draws", default)
+                                         "what the script for the scene draws", starts, ends)
     quantities.compare(options, common_kind(options.runs))
 
 

@@ -1,18 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Plot of how fast grains fall, as a function of the distance from the axis of a hopper, or of the place along x in a box."""
 
-import re
-
 from matplotlib import pyplot as plt
 
+from .by_name import curve
 from .plot_style import STYLE
-
-
-def _profile(found, height, place):
-    """Places (d), speeds (d/tau) and their standard errors at a height."""
-    pattern = re.compile(rf"speed_{height:g}d_{place}(-?[\d.]+)d")
-    rows = [(float(match[1]), *value) for name, value in found.items() if (match := pattern.fullmatch(name))]
-    return list(zip(*sorted(rows)))
 
 
 def save_profiles(path, reference, spot, heights, place):
@@ -24,7 +16,7 @@ def save_profiles(path, reference, spot, heights, place):
     figure, axes = plt.subplots(1, len(heights), figsize=(3.0 * len(heights), 3.0), layout="constrained", sharex=True)
     for panel, height in zip(axes, reversed(heights)):
         for label, found in (("DEM", reference), ("spot", spot)):
-            at, speed, error = _profile(found, height, place)
+            at, speed, error = curve(found, rf"speed_{height:g}d_{place}(-?[\d.]+)d")
             panel.errorbar(at, speed, error, linewidth=1, capsize=2, label=label, **STYLE[label])
         panel.set(title=f"{height:g} d above the outlet", xlabel=f"{place} (d)", ylim=(0, None))
     axes[0].set_ylabel("fall (d/tau)")

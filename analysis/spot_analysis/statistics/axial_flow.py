@@ -59,14 +59,18 @@ def measure(frames, scene, start, end):
 
 def _profile(pairs, height, radius):
     """Rate of fall in rings around the axis, at a height, and that at the wall over that on the axis (mass flow index)."""
-    rings = max(int(radius / RING + 1e-6), 1)
-    edges = np.append(RING * np.arange(rings), radius)  # the last is wider, up to the wall
-    speeds = np.array([speeds_at(before, after, height, edges, np.hypot) for before, after in pairs])
+    edges, speeds = speeds_in_rings(pairs, height, radius)
     name = f"speed_{height:g}d"
     found = {f"{name}_r{(low + high) / 2:.1f}d": mean_of(speeds[:, k]) for k, (low, high) in enumerate(zip(edges, edges[1:]))}
     with np.errstate(invalid="ignore", divide="ignore"):
         found[f"mass_flow_index_{height:g}d"] = mean_of(speeds[:, -1] / speeds[:, 0])
     return found
+
+
+def speeds_in_rings(pairs, height, radius):
+    """(edges, speeds) of rings around the axis, d, (rings + 1,), and d/tau, (pairs, rings); the last is wider, up to the wall."""
+    edges = np.append(RING * np.arange(max(int(radius / RING + 1e-6), 1)), radius)
+    return edges, np.array([speeds_at(*pair, height, edges, np.hypot) for pair in pairs])
 
 
 def speeds_at(before, after, height, edges, place):
