@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Reader for the text dumps of LAMMPS and LIGGGHTS (``dump custom``, ``dump atom``).
+"""Reader for the dumps of LAMMPS and LIGGGHTS (``dump custom``, ``dump atom``).
 
-Plain, gzip or zstd (told by content), one frame or many in a file, any number and order of columns, any number of
+Text, plain, gzip or zstd, or LAMMPS' binary (told by content), one frame or many in a file, any number and order of columns, any number of
 atoms in each frame. The coordinate along x is taken from the first column among
 
     x, xu, xs, xsu
@@ -17,6 +17,7 @@ import os
 import warnings
 
 from ..base.errors import DumpError, TruncatedFrame
+from . import binary_dump
 from .compression import DAMAGED, open_text
 from .frame import read_frame
 from .header import read_item
@@ -67,6 +68,9 @@ def read_frames(source, extra=(), warn=warnings.warn):
 
 def read_file(path, extra=()):
     """Yield every frame of one file; raises TruncatedFrame when the file ends inside one."""
+    if binary_dump.is_binary(path):
+        yield from binary_dump.read_binary_frames(path, extra)
+        return
     with open_text(path) as handle:
         lines = Lines(path, handle)
         frames = 0
@@ -86,6 +90,8 @@ def _nothing_in(path):
 
 def _first_timestep(path):
     """Timestep of a file's first frame; infinite where the file ends before it."""
+    if binary_dump.is_binary(path):
+        return binary_dump.first_timestep(path)
     with open_text(path) as handle:
         lines = Lines(path, handle)
         header = {}
