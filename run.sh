@@ -38,7 +38,7 @@ results=$PWD/results/silo
 rm -rf "$results"
 mkdir -p "$results"
 echo "== Draining the silo for $time s of flow with fix spot (seed $seed)"
-(cd examples/silo && ../../build/bin/lmp -in in.silo_spot -var time "$time" -var seed "$seed" -var threads "$threads" -var out "$results/dumps" \
+(cd examples/silo && ../../build/bin/lmp -in in.silo_spot -var time "$time" -var seed "$seed" -var threads "$threads" -var format binary -var out "$results/dumps" \
   -log "$results/log.lammps")
 # Every 2 tau, and the packing at the start.
 snapshots=$(awk "BEGIN {n = $time / (2 * sqrt(0.003 / 9.81)); k = int(n); print k + (n - k > 1e-6) + 1}")

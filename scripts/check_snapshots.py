@@ -8,28 +8,22 @@ LAMMPS doesn't notice when a disk is full: it ends as if all were well. Exits wi
 import pathlib
 import sys
 
-import zstandard
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "analysis"))
 
-
-def what_is_wrong(path):
-    """Of one compressed text dump with one frame; None if nothing is."""
-    try:
-        with zstandard.open(path, "rb") as handle:
-            text = handle.read()
-    except zstandard.ZstdError as error:
-        return f"is damaged ({error})"
-    lines = text.splitlines()
-    whole = text.endswith(b"\n") and len(lines) >= 9 and len(lines) == 9 + int(lines[3])
-    return None if whole else f"is cut off after {len(lines)} lines"
+from spot_analysis.base.errors import DumpError  # noqa: E402  (beside this folder)
+from spot_analysis.reading.dump import read_file  # noqa: E402
 
 
 def main(folder, number):
-    paths = sorted(pathlib.Path(folder).glob("drain.*.dump.zst"))
+    paths = sorted(pathlib.Path(folder).glob("drain.*.dump.*"))
     if len(paths) != int(number):
         return f"{folder} holds {len(paths)} snapshots instead of {number}: is the disk full?"
     for path in paths:
-        if wrong := what_is_wrong(path):
-            return f"{path} {wrong}: is the disk full?"
+        try:
+            for _ in read_file(str(path)):
+                pass
+        except DumpError as error:
+            return f"{error}; is the disk full?"
     return None
 
 

@@ -5,6 +5,7 @@ import gzip
 import itertools
 import json
 import math
+import struct
 
 import numpy as np
 import zstandard
@@ -23,6 +24,18 @@ def frame_text(timestep, ids, positions, columns="id x y z", before="", box=((-1
     bounds = "".join(f"{low} {high}\n" for low, high in box)
     return (f"{before}ITEM: TIMESTEP\n{timestep}\nITEM: NUMBER OF ATOMS\n{len(ids)}\n"
             f"ITEM: BOX BOUNDS ff ff ff\n{bounds}ITEM: ATOMS {columns} \n{rows}")
+
+
+def binary_frame(timestep, columns, ranks=1, box=((-1, 1), (-2, 2), (0, 4)), periodic=(0, 0, 0), time=None, order="<", kind="DUMPCUSTOM"):
+    """One frame as LAMMPS writes it into FILE.bin; columns : name -> (n,); ranks : each has a block of atoms."""
+    rows = np.stack([np.asarray(values, dtype=float) for values in columns.values()], axis=1)
+    text = lambda words: struct.pack(f"{order}i", len(words)) + words.encode()
+    flags = [0 if axis else 1 for axis in periodic for _ in range(2)]
+    head = struct.pack(f"{order}q", -len(kind)) + kind.encode() + struct.pack(f"{order}iiqqi6i6di", 1, 2, timestep, len(rows), 0, *flags,
+                                                                             *np.ravel(box), len(columns))
+    head += text("") + (b"\0" if time is None else struct.pack(f"{order}Bd", 1, time)) + text(" ".join(columns))
+    blocks = [struct.pack(f"{order}i", part.size) + part.astype(f"{order}f8").tobytes() for part in np.array_split(rows, ranks)]
+    return head + struct.pack(f"{order}i", ranks) + b"".join(blocks)
 
 
 def write_frames(folder, frames, scene, columns=()):

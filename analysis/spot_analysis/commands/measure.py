@@ -11,7 +11,7 @@ from . import command_line
 
 def measure():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("dumps", help="folder, file or wildcard of LAMMPS or LIGGGHTS dumps (text, gzip or zstd)")
+    parser.add_argument("dumps", help="folder, file or wildcard of LAMMPS or LIGGGHTS dumps (text, gzip, zstd, or LAMMPS' binary)")
     parser.add_argument("-o", "--output", required=True, metavar="FILE.npz", help="statistics file to write")
     parser.add_argument("--source", help="where the dumps come from, kept in the file (default: the scene's program)")
     command_line.add_scene_options(parser)

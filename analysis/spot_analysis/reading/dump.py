@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Reader for the dumps of LAMMPS and LIGGGHTS (``dump custom``, ``dump atom``).
 
-Text, plain, gzip or zstd, or LAMMPS' binary (told by content), one frame or many in a file, any number and order of columns, any number of
-atoms in each frame. The coordinate along x is taken from the first column among
+Text, plain, gzip or zstd, or LAMMPS' binary, told by content. One frame or many in a file, any number and order of
+columns, any number of atoms in each frame. The coordinate along x is taken from the first column among
 
     x, xu, xs, xsu
 
@@ -111,6 +111,8 @@ def _first_timestep(path):
 
 
 def _is_local_dump(path):
+    if binary_dump.is_binary(path):
+        return False
     with open_text(path) as handle:
         try:
             return any(line.startswith("ITEM: NUMBER OF ENTRIES") for line in itertools.islice(handle, 8))

@@ -8,6 +8,7 @@ import re
 import numpy as np
 
 from ..base.errors import DumpError
+from .binary_dump import is_binary
 from .columns_file import read_columns
 from .compression import DAMAGED, open_text
 from .data_file import read_data_file
@@ -36,6 +37,8 @@ def read_packing(source, step=None, columns=None):
 
 def _kind(path):
     """What the first lines look like."""
+    if is_binary(path):
+        return "dump"
     with open_text(path) as handle:
         try:
             start = list(itertools.islice(handle, 40))
