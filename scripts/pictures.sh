@@ -95,9 +95,9 @@ pictures_of_two-outlets() {
 
 pictures_of_pebble-bed() {
   local runs=results/pictures/pebble-bed here=examples/pebble-bed
-  drain pebble-bed 1
-  "$python" -B $here/residence.py $runs/1 -o $here/residence.png >/dev/null
-  render spot=$runs/1 --diameter 0.06 --layer 5 --slice -1 1 --times 0 196 396 796 --height 440 -o $here/bed.png
+  for seed in 1 2 3; do drain pebble-bed $seed -var seed $seed; done
+  analysis turnovers $here/dem-60.json $runs/{1,2,3} --plot $here/residence.png
+  render spot=$runs/1 --layer 5 --slice -1 1 --times 0 100 200 400 --height 440 -o $here/bed.png
 }
 
 pictures_of_python() {
