@@ -181,7 +181,7 @@ LATENCY, BANDWIDTH = 2e-6, 1e10  # s of a message; bytes/s of a rank: a cluster'
 DENSITY = 0.574 * 6 / math.pi  # grains in d^3
 EDGE, REACH = 1.5, 3.88  # d; of a cell, and of a move (TiledPacking)
 AREA = 2 * HALF_WIDTH * 8  # d^2, cross-section of the example's silo
-BIRTHS = 37  # a window in it
+BIRTHS = 60  # a window in it
 
 
 def measured_inputs(birth_us, said):
