@@ -11,6 +11,7 @@ from typing import Callable
 from ..base.errors import AnalysisError
 from ..report import quantity_table
 
+
 @dataclass(frozen=True)
 class Kind:
     """A kind of scene and how it is measured.

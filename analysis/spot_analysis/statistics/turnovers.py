@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How a round bed is turned over, whose grains come in again on top: residence times, profiles of the fall, packing fraction
-and mixing.
+"""How a round bed is turned over, whose grains come in again on top: residence times, profiles of the fall, packing
+fraction and mixing.
 
-The unit of time is the turnover, in which as many grains drain as there are: a slow flow without inertia is the same at any
-outflow. Lengths are in grain diameters d.
+The unit of time is the turnover, in which as many grains drain as there are: a slow flow without inertia is the same at
+any outflow. Lengths are in grain diameters d.
 """
 
 import numpy as np
@@ -50,9 +50,8 @@ def measure(frames, scene, start, end):
     pairs = list(zip(inside, inside[1:]))
     for height in HEIGHTS:
         edges, speeds = speeds_in_rings(pairs, height, scene.radius_at(height))
-        falls = {f"fall_{height:g}d_r{(low + high) / 2:.1f}d": mean_of(turnover * speeds[:, k])
-                 for k, (low, high) in enumerate(zip(edges, edges[1:]))}
-        found.update(falls)
+        found.update({f"fall_{height:g}d_r{(low + high) / 2:.1f}d": mean_of(turnover * speeds[:, k])
+                      for k, (low, high) in enumerate(zip(edges, edges[1:]))})
     names = [*(f"volume_fraction_{height:g}d" for height in HEIGHTS), "volume_fraction_core"]
     found.update(zip(names, map(mean_of, np.transpose([fractions_of_layers(s, scene, HEIGHTS) for s in inside]))))
     for after in (at for at in MIXED_AFTER if at <= turned[-1]):
