@@ -75,6 +75,13 @@ def test_runs_that_do_not_suffice(start, end, said):
         turnovers.measure(going_round(), SCENE, start, end)
 
 
+def test_grains_that_leave_for_good_are_refused():
+    frames = going_round()
+    frames[-1] = Frame(frames[-1].timestep, frames[-1].ids[1:], frames[-1].positions[1:], frames[-1].box)
+    with pytest.raises(ValueError, match="grains leave for good"):
+        turnovers.measure(frames, SCENE, 1.0, 3.0)
+
+
 def test_the_command_compares_and_keeps_statistics(tmp_path):
     run = write_frames(tmp_path / "run", going_round(count=400), {**vars(SCENE), "program": "test"})
     kept = tmp_path / "kept.json"

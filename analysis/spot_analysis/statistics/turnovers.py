@@ -37,6 +37,8 @@ def measure(frames, scene, start, end):
         raise ValueError(f"{turned[-1] if len(turned) else 0:.3g} turnovers, but --to is {end:g}")
     if end < LONGEST:
         raise ValueError(f"--to is {end:g}, but stays are followed for {LONGEST:g} turnovers")
+    if any(not np.array_equal(s.ids, snapshots[0].ids) for s in snapshots):
+        raise ValueError("grains leave for good, or new ones come: in a turned bed all go round")
     used = turned <= end
     snapshots, turned = [s for s, use in zip(snapshots, used) if use], turned[used]
     inside = [s for s, at in zip(snapshots, turned) if at >= start]
