@@ -173,6 +173,7 @@ const std::map<std::string, Reader>& readers() {
        }},
       {"surface",
        [](SpotCommand& c, Words& w) { c.spots.surface_exponent = w.not_negative("the exponent of the surface"); }},
+      {"fade", [](SpotCommand& c, Words& w) { c.spots.fade = w.not_negative("the fade of the outflow"); }},
       {"nonaffine",
        [](SpotCommand& c, Words& w) {
          c.spots.nonaffine = w.not_negative("non-affine motion");
@@ -334,6 +335,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"dilatancy", precise(spots.dilatancy)},
           {"spread", precise(spots.spread, ' ', spots.wall_shear)},
           {"surface", precise(spots.surface_exponent)},
+          {"fade", precise(spots.fade)},
           {"nonaffine", precise(spots.nonaffine, ' ', spots.nonaffine_length)},
           {"injection", outlets.text_of_rates()},
           {"volume", precise(spots.fixed_volume)},

@@ -79,6 +79,8 @@ void bind_numbers(Class& c) {
   number(c, "wall_shear", spots, &S::wall_shear, "kappa: walls shear by kappa over their half-width.");
   number(c, "surface_exponent", spots, &S::surface_exponent,
          "beta: how much rather spots go where the surface is higher.");
+  number(c, "fade", spots, &S::fade,
+         "c: the outflow fades by 1 - exp(-H / (c D)), H being the bed's depth over it. 0: not.");
   number(c, "nonaffine", spots, &S::nonaffine, "S: how much grains go against their neighbours.");
   number(c, "nonaffine_length", spots, &S::nonaffine_length, "l: of fall in which a grain goes the same way (length).");
   number(c, "together", spots, &S::together, "All spots step at the same times.");

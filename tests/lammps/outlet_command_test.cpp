@@ -81,6 +81,7 @@ TEST(OutletCommand, SchedulesMayNameVariables) {
 TEST(OutletCommand, BirthsFollowTheOutflowThatIsGiven) {
   const SpotCommand c = command_of(box, "orifice -8 0 0 4 orifice 8 0 0 4 outflow 30 10 schedule 2 5 0");
   EXPECT_TRUE(c.spots.holds_outflow);
+  EXPECT_EQ(c.spots.fade, 0.0);
   EXPECT_NEAR(c.spots.injection_rate.at(0, 0.0), 30.0 / (c.spots.influence * 77), 1e-9);
   EXPECT_NEAR(c.spots.injection_rate.at(1, 4.0), 10.0 / (c.spots.influence * 77), 1e-9);
   EXPECT_EQ(c.spots.injection_rate.at(1, 6.0), 0.0);

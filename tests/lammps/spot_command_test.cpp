@@ -238,7 +238,7 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
   for (const std::string keyword :
        {"accuracy",  "steps",   "strength",   "relax",         "relax tol", "relax chance", "threads",
         "momentum",  "contact", "closing",    "closing 0.004", "volume",    "critical",     "critical 0.58",
-        "dilatancy", "spread",  "spread 0.6", "surface",       "nonaffine", "nonaffine 0.1"})
+        "dilatancy", "spread",  "spread 0.6", "surface",       "fade", "nonaffine", "nonaffine 0.1"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -388,7 +388,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "walls",     "add",         "cut",
                                                "block",     "cone",        "z",
                                                "plane",     "sphere",      "NULL",
-                                               "recirculate", "hopper", "v_open", "scene"};
+                                               "recirculate", "hopper", "v_open", "scene", "fade"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -498,6 +498,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"dilatancy", in(c.spots.dilatancy, "")},
       {"spread", in(c.spots.spread, "")},
       {"surface", in(c.spots.surface_exponent, "")},
+      {"fade", in(c.spots.fade, "")},
       {"nonaffine", in(c.spots.nonaffine, "")},
       {"steps", c.spots.together ? "together" : "poisson"},
       {"threads", std::to_string(c.threads)},

@@ -48,6 +48,7 @@ class PinnedScenes {
       add(plain(time_ordered, "all-ingredients"), all_ingredients);
       add(plain(time_ordered, "spread"), spreading);
       add(plain(time_ordered, "outflow"), holding_outflow);
+      add(plain(time_ordered, "fade"), fading);
     }
   }
   const std::vector<PinnedScene>& all() const { return all_; }
@@ -132,6 +133,12 @@ class PinnedScenes {
   static void holding_outflow(PinnedScene& scene) {
     spreading(scene);
     scene.spots.holds_outflow = true;
+  }
+
+  /// So strongly that a bed of that depth has it, too.
+  static void fading(PinnedScene& scene) {
+    holding_outflow(scene);
+    scene.spots.fade = 2.0;
   }
 
   static void let_come_and_go(PinnedScene& scene) {

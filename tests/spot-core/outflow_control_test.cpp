@@ -128,6 +128,53 @@ TEST(OutflowControlUnit, CallsWithinAnIntervalChangeNothing) {
   EXPECT_NE(often.factors()[0], 1.0);
 }
 
+/// A bed with a flat surface at this height.
+spot::FreeSurface surface_at(double height, const SpotParameters& spots) {
+  spot::FreeSurface surface(spots, space(), 1.0);
+  for (double x = -20.0; x <= 20.0; x += 0.5)
+    for (double y = -10.0; y <= 10.0; y += 0.5) surface.add({x, y, height});
+  Alone alone;
+  surface.gather(alone);
+  return surface;
+}
+
+TEST(OutflowControlAnalytic, WhatIsAskedForFadesWithTheDepthOfTheBed) {
+  SpotParameters spots = spots_at(two_outlets({{0.0, rate}}));
+  spots.fade = 0.25;  // of a width of 8
+  OutflowControl control(spots, space(), 1.0);
+  control.fade(spot::FreeSurface(spots, space(), 1.0));
+  EXPECT_THAT(control.factors(), Each(1.0));  // nobody knows yet
+  for (const double height : {40.0, 8.0, 4.5, 2.5, 1.0}) {
+    control.fade(surface_at(height, spots));
+    EXPECT_THAT(control.factors(), Each(testing::DoubleNear(1.0 - std::exp(-(height - 0.5) / 2.0), 1e-9))) << height;
+  }
+  control.fade(surface_at(0.4, spots));
+  EXPECT_THAT(control.factors(), Each(spot::calibration::least_outflow_share));
+}
+
+TEST(OutflowControlAnalytic, OutflowComesToItsShareOfWhatIsAskedFor) {
+  SpotParameters spots = spots_at(two_outlets({{0.0, rate}}));
+  spots.fade = 0.25;
+  OutflowControl control(spots, space(), 1.0);
+  control.fade(surface_at(2.5, spots));
+  const double end = 30.0 * memory_time(spots), counted = 10.0 * memory_time(spots);
+  const auto grains = deliver(control, spots, {0.9, 0.9}, 0.0, end, counted);
+  const double asked = (1.0 - std::exp(-1.0)) * rate * spots.influence * spots.fixed_volume * counted;
+  EXPECT_NEAR(grains[0], asked, 2.0 + 1e-3 * asked);
+}
+
+TEST(OutflowControlUnit, SharesAreSaved) {
+  SpotParameters spots = spots_at(two_outlets({{0.0, rate}}));
+  spots.fade = 0.25;
+  OutflowControl control(spots, space(), 1.0), other(spots, space(), 1.0);
+  control.fade(surface_at(2.5, spots));
+  spot::Bytes saved;
+  control.save(saved);
+  spot::ByteReader reader(saved);
+  other.restore(reader, true);
+  EXPECT_EQ(control.factors(), other.factors());
+}
+
 /// The outflow over some time, in grains, of a silo whose orifice, 5.4 d wide, loses a part of what spots bring.
 template <typename Driver>
 double outflow_over(const SpotParameters& spots, double from, double until) {

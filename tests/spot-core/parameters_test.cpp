@@ -197,6 +197,19 @@ TEST(ParametersUnit, SpreadAndShearByWallsAreBounded) {
   EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("spread is 0.6 "), HasSubstr("no fixed volume")));
 }
 
+TEST(ParametersUnit, FadeIsBoundedAndForBirthsThatFollowTheOutflow) {
+  SpotParameters spots = scenes::paper_spots();
+  EXPECT_EQ(spots.fade, 0.0);
+  spots.fade = 0.25;
+  EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("fade is 0.25 "), HasSubstr("births do not follow the outflow")));
+  spots.holds_outflow = true;
+  EXPECT_NO_THROW(spots.validate());
+  for (const double bad : {-0.1, 2.1, infinity, -infinity, std::nan("")}) {
+    spots.fade = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("fade is "), HasSubstr("from 0 (off) to 2")));
+  }
+}
+
 TEST(ParametersUnit, NonaffineMotionIsUpToHalfTheFallAndHasALength) {
   SpotParameters spots = scenes::paper_spots();
   EXPECT_EQ(spots.nonaffine, 0.0);

@@ -75,6 +75,10 @@ void add_parameters(std::vector<Case>& cases) {
   });
   add_values(cases, "surface beta", {0, 1e-6, 0.5, 3, 10, 32, 33},
              [](Scene& s, double v) { s.spots.surface_exponent = v; });
+  add_values(cases, "outflow held, fade c", {0, 1e-6, 0.25, 2, 2.1}, [](Scene& s, double v) {
+    s.spots.holds_outflow = true;
+    s.spots.fade = v;
+  });
 }
 
 /// What the time-ordered algorithm has not.

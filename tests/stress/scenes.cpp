@@ -177,6 +177,7 @@ Scene::Scene(std::uint64_t seed)
   if (draws.below(2) == 0 && spots.fixed_volume > 0.0) draw_critical(draws);
   const double held = draws.below(3) == 0 ? 0.03 : 0.0;
   for (spot::Grain& grain : grains) grain.held = draws.uniform(0.0, 1.0) < held;
+  if (spots.holds_outflow && draws.below(2) == 0) spots.fade = draws.uniform(0.1, 2.0);
 }
 
 /// The bed is looser than any that flows, which is refused: so it is too shallow to be checked.

@@ -88,6 +88,7 @@ class Parameters:
     spread: float
     wall_shear: float
     surface_exponent: float
+    fade: float
     nonaffine: float
     nonaffine_length: float
     together: bool

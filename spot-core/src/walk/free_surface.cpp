@@ -21,7 +21,7 @@ constexpr double none = -std::numeric_limits<double>::infinity();
 }  // namespace
 
 FreeSurface::FreeSurface(const SpotParameters& parameters, const Container& container, double diameter)
-    : needed_(parameters.surface_exponent > 0.0 || parameters.spread > 0.0),
+    : needed_(parameters.surface_exponent > 0.0 || parameters.spread > 0.0 || parameters.fade > 0.0),
       container_(&container),
       profile_(parameters.profile),
       radius_(parameters.radius),

@@ -59,6 +59,7 @@ void SpotParameters::validate() const {
     throw InvalidParameter(message("surface exponent is ", surface_exponent, " but must be from 0 (off) to ",
                                    calibration::largest_surface_exponent));
   validate_nonaffine_motion();
+  validate_fade();
   if (dilation > 0.0 && together)
     throw InvalidParameter(message("spot dilation is ", dilation, " but must be 0 for spots that step together"));
   require_positive("spot step width", step_width);
@@ -96,6 +97,13 @@ void SpotParameters::validate_critical_state() const {
   if (fixed_volume == 0.0)
     throw InvalidParameter(message("critical packing fraction is ", critical_fraction,
                                    " but spots carry no fixed volume, of which they could leave some"));
+}
+
+void SpotParameters::validate_fade() const {
+  if (!(fade >= 0.0 && fade <= calibration::largest_fade))
+    throw InvalidParameter(message("fade is ", fade, " but must be from 0 (off) to ", calibration::largest_fade));
+  if (fade > 0.0 && !holds_outflow)
+    throw InvalidParameter(message("fade is ", fade, " but must be 0 where births do not follow the outflow"));
 }
 
 void SpotParameters::validate_spread() const {

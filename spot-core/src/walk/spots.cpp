@@ -196,7 +196,9 @@ void Spots::update_surface(double now, const VisitGrains& visit_grains, Communic
 }
 
 void Spots::follow_outflow(double now, Communicator& communicator) {
-  if (outflow_.update(now, communicator)) walk_.set_rates(outflow_.rates());
+  if (!outflow_.update(now, communicator)) return;
+  outflow_.fade(surface_);
+  walk_.set_rates(outflow_.rates());
 }
 
 void Spots::set_rates(double now, const Injection& rates) {

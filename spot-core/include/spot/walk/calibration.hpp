@@ -36,6 +36,12 @@ constexpr double climb_of_flow_memory = 10.0;
 /// Births follow the outflow by half of their rate at most. A choice: DEM's narrowest orifice, 6.5 d wide, needs 1.07.
 constexpr double largest_outflow_correction = 0.5;
 
+/// The outflow fades to this share at most: with no births at all nobody would see the bed come back.
+constexpr double least_outflow_share = 0.1;
+
+/// Of the length by which the outflow fades, in widths of the outlet. DEM's half-full silo has 1/6; a choice.
+constexpr double largest_fade = 2.0;
+
 /// Of 2010's rule for the free surface. It has 3; with more than ten times that, spots only climb the steepest way.
 constexpr double largest_surface_exponent = 32.0;
 

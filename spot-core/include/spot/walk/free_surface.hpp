@@ -31,6 +31,8 @@ class FreeSurface {
   bool steers() const { return beta_ > 0.0; }
   /// Does anybody ask anything?
   bool needed() const { return needed_; }
+  /// Has any grain been found yet?
+  bool known() const { return !heights_.empty(); }
 
   /// Forgets all grains.
   void clear();

@@ -8,6 +8,7 @@
 #include "spot/base/recurrence.hpp"
 #include "spot/geometry/container.hpp"
 #include "spot/parallel/communicator.hpp"
+#include "spot/walk/free_surface.hpp"
 #include "spot/walk/parameters.hpp"
 
 namespace spot {
@@ -24,6 +25,12 @@ namespace spot {
 /// volume and gains none. What is over it when it opens leaves at once, and would make births fewer for T. A spot
 /// delivers its volume on its way through the outlet, so F is that of R_s / v_s before. T is
 /// calibration::climb_of_flow_memory R_s / v_s.
+///
+/// As the bed over an outlet runs out, less than F is asked for, as in DEM (docs/notes/2026-11-30-fade.md): its share
+///
+///     1 - exp(-H / (c D)),
+///
+/// D being the width of the outlet and H the mean depth of the bed over it, that of the free surface less half a grain.
 class OutflowControl {
  public:
   /// `diameter`: the reference diameter.
@@ -37,6 +44,9 @@ class OutflowControl {
   /// Collective. Once in each interval in which a spot at v_s climbs calibration::climb_between_surfaces R_s, whatever
   /// the times of the calls in it after the first: finds the factors anew. Says whether it has.
   bool update(double now, Communicator& communicator);
+
+  /// From now on what is asked for is the share that goes with this surface, if it is known.
+  void fade(const FreeSurface& surface);
 
   /// nu_s, as it has been so far and is to be.
   const Injection& births() const { return births_; }
@@ -55,8 +65,11 @@ class OutflowControl {
 
  private:
   double asked(std::size_t outlet, double from, double until) const;
+  double depth(const Outlet& outlet, const FreeSurface& surface) const;
 
   bool on_;
+  double fade_, radius_of_grain_;
+  Outlets outlets_;
   Injection births_;             // what was long ago is forgotten once it changes
   std::vector<double> largest_;  // rates of births through time
   double volume_of_birth_;       // 1024 = grain_volume
@@ -65,6 +78,7 @@ class OutflowControl {
   double updated_ = 0.0;               // when it was last
   std::vector<std::int64_t> counted_;  // by this rank, since then
   std::vector<double> missing_;        // M
+  std::vector<double> shares_;         // of F, that are asked for now
 };
 
 }  // namespace spot

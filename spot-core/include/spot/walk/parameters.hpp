@@ -20,6 +20,9 @@ struct SpotParameters {
   Injection injection_rate = 0.0;  ///< nu_s: births per time at each outlet (1 / time)
   /// Births follow what leaves (OutflowControl), so that it is nu_s times the volume of a newborn spot.
   bool holds_outflow = false;
+  /// c: what is asked for fades as the bed over an outlet runs out, by 1 - exp(-H / (c D)), H being the depth of the
+  /// bed there and D the outlet's width (OutflowControl). 0: it does not.
+  double fade = 0.0;
   /// N: a spot always carries the free volume of w N grains of mean volume, whatever volume it encloses, of which each
   /// grain's counts by its share of the influence (2010's fixed-volume weighting).
   /// 0: every grain it encloses moves by -w dr (2006).
@@ -82,6 +85,7 @@ struct SpotParameters {
 
  private:
   void validate_critical_state() const;
+  void validate_fade() const;
   void validate_spread() const;
   void validate_nonaffine_motion() const;
 };
