@@ -119,11 +119,13 @@ def test_bad_files_are_errors_with_a_cause(tmp_path, case):
 
 
 @pytest.mark.skipif(LMP is None, reason="needs lmp on the PATH (Debian: apt install lammps)")
-@pytest.mark.parametrize("boundary, box", [("f f f", ""), ("f p f", ""), ("f f f", "change_box all triclinic\n")])
-def test_lammps_writes_the_same_as_text(tmp_path, boundary, box):
+@pytest.mark.parametrize("boundary, box, speed", [("f f f", "", 0.2), ("f p f", "", 0.9), ("f f f", "change_box all triclinic\n", 0.2)])
+def test_lammps_writes_the_same_as_text(tmp_path, boundary, box, speed):
+    """Grains stay inside, but those that go around the box."""
     (tmp_path / "in.both").write_text(
         f"units lj\natom_style sphere\nboundary {boundary}\nregion box block -3 3 -2 2 0 9\ncreate_box 1 box\n"
-        f"create_atoms 1 random 50 7 box\nset group all diameter 0.3\n{box}fix move all move linear 0.1 0.9 0\ntimestep 1\n"
+        f"region middle block -2 2 -1 1 1 8\ncreate_atoms 1 random 50 7 middle\nset group all diameter 0.3\n{box}"
+        f"fix move all move linear 0.1 {speed} 0\ntimestep 1\n"
         "dump text all custom 2 a.dump id x yu z radius\ndump binary all custom 2 b.dump.bin id x yu z radius\n"
         "dump_modify text format float %.17g\ndump_modify binary time yes\nrun 4\n")
     done = subprocess.run([LMP, "-in", "in.both", "-log", "none"], cwd=tmp_path, capture_output=True, text=True)
