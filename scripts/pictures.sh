@@ -97,7 +97,8 @@ pictures_of_pebble-bed() {
   local runs=results/pictures/pebble-bed here=examples/pebble-bed
   for seed in 1 2 3; do drain pebble-bed $seed -var seed $seed; done
   analysis turnovers $here/dem-60.json $runs/{1,2,3} --plot $here/residence.png
-  render spot=$runs/1 --layer 5 --slice -1 1 --times 0 100 200 400 --height 440 -o $here/bed.png
+  render spot=$runs/1 --layer 5 --slice -1 1 --times 0 92 184 368 --height 330 -o $here/bed.png
+  render DEM=$here/dem.npz --height 330 -o $here/bed-dem.png
 }
 
 pictures_of_python() {
