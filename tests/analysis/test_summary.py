@@ -47,7 +47,7 @@ def test_a_file_is_compared_and_decides_between_box_and_mixture(runs, tmp_path):
 def test_stored_references_are_known():
     """By what they hold: their files do not say of what scene they are."""
     kinds = {"hoppers": "hopper", "benchmark-silo": "hopper", "half-full": "round container", "periodic-slot": "box",
-             "two-outlets": "box", "bidisperse": "mixture"}
+             "two-outlets": "box", "bidisperse": "mixture", "pebble-bed": "turned bed"}
     assert {(path.parent.name, summary.kind_of(str(path)).what) for path in EXAMPLES.glob("*/dem*.json")} == set(kinds.items())
 
 
