@@ -22,6 +22,7 @@
 #include "ranks_of_threads.hpp"
 #include "read_grains.hpp"
 #include "spot/drivers/defaults.hpp"
+#include "spot/drivers/glass_beads.hpp"
 #include "spot/drivers/windowed_drainage.hpp"
 #include "spot/geometry/silos.hpp"
 #include "spot/walk/spot_walk.hpp"
@@ -119,35 +120,13 @@ class Counting : public spot::Communicator {
   double talk_ = 0.0;
 };
 
-// ---- the drainage, as examples/silo/in.silo_spot and lammps-package/glass-beads.lmp have it
+// ---- the drainage, as examples/silo/in.silo_spot has it
 
 spot::SpotParameters spot_parameters() {
-  spot::SpotParameters spots;
-  spots.profile = spot::InfluenceProfile::parabolic;
-  spots.radius = 3.53;
-  spots.influence = 1.5e-3;
-  spots.step_height = spot::step_height_in_diameters(spot::Accuracy::normal);
-  spots.step_width = spot::step_width_for(1.47, spots.step_height);
-  spots.speed = 6.0;
-  spots.fixed_volume = 77.0;
-  spots.critical_fraction = 0.62;
-  spots.exchange_length = 0.75;
-  spots.dilatancy = 0.15;
-  spots.spread = 0.6;
-  spots.wall_shear = 0.7;
-  spots.surface_exponent = 2.0;
-  spots.nonaffine = 0.15;
-  spots.nonaffine_length = 0.5;
+  spot::SpotParameters spots = spot::glass_beads::spots(1.0, 1.0);
   spots.injection_rate = spot::births_for(69.6, spots, 1.0);
   spots.holds_outflow = true;
   return spots;
-}
-
-spot::RelaxationParameters relaxation(const spot::SpotParameters& spots) {
-  auto relaxation = spot::relaxation_of(spot::Accuracy::normal, *spots.profile);
-  relaxation.closing_gap = 0.004;
-  relaxation.closing_share = 0.15;
-  return relaxation;
 }
 
 std::shared_ptr<const spot::Container> silo() {
@@ -156,8 +135,16 @@ std::shared_ptr<const spot::Container> silo() {
 
 template <typename Start>
 WindowedDrainage drainage(const Start& start, const std::shared_ptr<spot::Communicator>& ranks) {
-  const spot::SpotParameters spots = spot_parameters();
-  return {spots, relaxation(spots), spot::DrainageLimits{0.0}, window, 1, silo(), 1.0, 200.0, start, ranks};
+  return {spot_parameters(),
+          spot::glass_beads::relaxation(),
+          spot::DrainageLimits{0.0},
+          window,
+          1,
+          silo(),
+          1.0,
+          200.0,
+          start,
+          ranks};
 }
 
 /// Of drawing one birth (s), which every rank does for all births.

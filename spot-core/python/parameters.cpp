@@ -8,6 +8,7 @@
 
 #include "spot/base/errors.hpp"
 #include "spot/drivers/defaults.hpp"
+#include "spot/drivers/glass_beads.hpp"
 #include "spot/relaxation/calibration.hpp"
 
 namespace py = pybind11;
@@ -101,24 +102,9 @@ void bind_numbers(Class& c) {
 Parameters::Parameters(double d, double tau) : diameter(d) {
   require_positive("diameter", d);
   require_positive("tau", tau);
-  spots.profile = spot::InfluenceProfile::parabolic;
-  spots.radius = spots.profile->calibrated().radius_in_diameters * d;
-  spots.step_height = spot::step_height_in_diameters(spot::Accuracy::normal) * d;
-  spots.influence = 1.5e-3;
-  spots.speed = 6.0 * d / tau;
-  spots.fixed_volume = 77.0;
-  spots.critical_fraction = 0.62;
-  spots.exchange_length = 0.75 * d;
-  spots.dilatancy = 0.15 * d;
-  spots.spread = 0.6;
-  spots.wall_shear = 0.7;
-  spots.surface_exponent = 2.0;
-  spots.nonaffine = 0.15;
-  spots.nonaffine_length = 0.5 * d;
-  diffusion_length = 1.47 * d;
-  relaxation = spot::relaxation_of(spot::Accuracy::normal, *spots.profile);
-  relaxation.closing_gap = 0.004;
-  relaxation.closing_share = 0.15;
+  spots = spot::glass_beads::spots(d, tau);
+  diffusion_length = spot::glass_beads::diffusion_length * d;
+  relaxation = spot::glass_beads::relaxation();
   buffers = {spot::calibration::side_buffer * d, spot::calibration::base_buffer * d};
   largest_overlap = spot::calibration::largest_overlap_at_start;
 }

@@ -6,33 +6,18 @@
 #include <cstdio>
 #include <exception>
 
+#include "spot/drivers/glass_beads.hpp"
+
 namespace stress {
 
 constexpr double deck_radius = 3.53;
 
 Scene::Scene() {
-  spots.profile = spot::InfluenceProfile::parabolic;
-  spots.radius = deck_radius;
-  spots.influence = 1.5e-3;
-  spots.speed = 6.0;
+  spots = spot::glass_beads::spots(1.0, 1.0);
   spots.injection_rate = 613.0;
-  spots.fixed_volume = 77.0;
   // The deck's 0.62 is for packings that were poured; this one has 0.54 at rest, to the smallest spots 0.503.
   spots.critical_fraction = 0.5;
-  spots.exchange_length = 0.75;
-  spots.dilatancy = 0.15;
-  spots.spread = 0.6;
-  spots.wall_shear = 0.7;
-  spots.surface_exponent = 2.0;
-  spots.nonaffine = 0.15;
-  spots.nonaffine_length = 0.5;
-  spots.seed = 1;
-  set_step_height(1.2);
-  relaxation.tolerance = 1.7e-3;
-  relaxation.momentum = 0.67;
-  relaxation.contact_overlap = 1.5e-3;
-  relaxation.closing_gap = 0.004;
-  relaxation.closing_share = 0.15;
+  relaxation = spot::glass_beads::relaxation();
   fill(14.0);
 }
 
