@@ -10,6 +10,7 @@ import json
 import math
 import os
 import pathlib
+import shlex
 import shutil
 import signal
 import statistics
@@ -225,7 +226,7 @@ def spot_deck(words="", data=None, half_width=None, timestep=None, before_fix=()
     (tau); before_fix : commands to go there
     """
     commands = (EXAMPLE / "in.silo_spot").read_text().replace("&\n", " ").splitlines()
-    commands = [command for command in commands if not OUTPUT_COMMANDS & set(command.split()[:1])]
+    commands = [command for command in commands if not _is_output(command)]
     place = _only([number for number, command in enumerate(commands) if command.split()[:1] == ["fix"]
                    and command.split()[3:4] == ["spot"]], "fix ID group spot")
     fix = f"{commands[place]} {words}".split()
@@ -240,6 +241,13 @@ def spot_deck(words="", data=None, half_width=None, timestep=None, before_fix=()
     if timestep:
         commands.append(f"timestep $({timestep}*v_tau)")
     return "\n".join([*commands, f"include {BENCHMARKS / 'in.spot'}", ""])
+
+
+def _is_output(command):
+    """Whether it is an output command, or an ``if`` that chooses among such."""
+    words = shlex.split(command, comments=True)
+    choices = [word.split() for word in words[1:]] if words[:1] == ["if"] else [words]
+    return any(OUTPUT_COMMANDS & set(choice[:1]) for choice in choices)
 
 
 def _only(found, what):
