@@ -12,7 +12,7 @@
 #include "spot/parallel/communicator.hpp"
 
 /// Of the format of what the fix puts into a restart file, which no other version reads.
-inline constexpr std::int32_t saved_run_version = 14;
+inline constexpr std::int32_t saved_run_version = 15;
 
 /// What the fix puts into a restart file of LAMMPS.
 struct SavedRun {

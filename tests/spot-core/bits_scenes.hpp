@@ -49,6 +49,7 @@ class PinnedScenes {
       add(plain(time_ordered, "spread"), spreading);
       add(plain(time_ordered, "outflow"), holding_outflow);
       add(plain(time_ordered, "fade"), fading);
+      add(plain(time_ordered, "widening"), widening);
     }
   }
   const std::vector<PinnedScene>& all() const { return all_; }
@@ -139,6 +140,12 @@ class PinnedScenes {
   static void fading(PinnedScene& scene) {
     holding_outflow(scene);
     scene.spots.fade = 2.0;
+  }
+
+  /// Within the little that grains fall.
+  static void widening(PinnedScene& scene) {
+    spreading(scene);
+    scene.spots.widening = {3.0, 0.5, 0.3};
   }
 
   static void let_come_and_go(PinnedScene& scene) {

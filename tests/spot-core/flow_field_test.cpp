@@ -263,6 +263,44 @@ TEST(FlowFieldAnalytic, AnExponentialSlopesEvenly) {
   }
 }
 
+SpotParameters widening_spots() {
+  SpotParameters spots = spreading_spots();
+  spots.fixed_volume = 77.0;
+  spots.widening = {1.8, 0.8, 20.0};
+  return spots;
+}
+
+/// Where every volume c^3 is passed by one step of a newborn spot, which carries the grains' own volume w N pi / 6 up
+/// by dz, they fall by w N pi / 6 dz / (phi c^3): however long ago, where what tells the shear has long been forgotten.
+TEST(FlowFieldAnalytic, WhatHasFallenIsNeverForgotten) {
+  const auto space = scenes::empty_space();
+  const SpotParameters spots = widening_spots();
+  const double apart = 0.75;
+  const double fall = spots.influence * 77.0 * scenes::pi / 6.0 * spots.step_height /
+                      (spot::calibration::packing_fraction_of_flow * std::pow(apart, 3));
+  FlowField field(spots, *space, 1.0);
+  Alone alone;
+  for (int times = 1; times <= 3; ++times) {
+    add(field, planted({-15, -15, -6}, {15, 15, 6}, apart, [](const Vector3&) { return 1.0; }));
+    field.update(1e3, alone);
+    for (const Vector3& at : {Vector3(0, 0, 0), Vector3(1.1, 2.3, -0.7)})
+      EXPECT_NEAR(field.fallen(at) / (times * fall), 1.0, 1e-3) << times;
+  }
+  EXPECT_EQ(field.fallen({100, 0, 0}), 0.0);
+  Bytes bytes;
+  field.save(bytes);
+  FlowField again(spots, *space, 1.0);
+  ByteReader saved(bytes);
+  again.restore(saved);
+  EXPECT_EQ(again.fallen({1.1, 2.3, -0.7}), field.fallen({1.1, 2.3, -0.7}));
+  FlowField other(spreading_spots(), *space, 1.0), without(spreading_spots(), *space, 1.0);
+  ByteReader once_more(bytes);
+  EXPECT_THROW(other.restore(once_more), spot::InvalidState) << "saved by other parameters";
+  add(without, planted({-15, -15, -6}, {15, 15, 6}, apart, [](const Vector3&) { return 1.0; }));
+  without.update(1.0, alone);
+  EXPECT_EQ(without.fallen({0, 0, 0}), 0.0) << "nobody asks";
+}
+
 /// Between plates at +-4 they shear by kappa / 4 everywhere, besides what the flow itself does.
 TEST(FlowFieldAnalytic, WallsShearWhatFallsBetweenThem) {
   SpotParameters spots = wide_spots();

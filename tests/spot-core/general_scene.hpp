@@ -51,7 +51,8 @@ inline std::vector<spot::Grain> unequal_grains(std::size_t n, const spot::Vector
       const auto overlaps = [&](const spot::Grain& other) {
         return periodic.nearest(spot::Vector3(other.position - centre)).norm() < radius + other.radius;
       };
-      if (near_any_image(centre, periodic, [&](const auto& image) { return placed.any_near(image, overlaps); })) continue;
+      if (near_any_image(centre, periodic, [&](const auto& image) { return placed.any_near(image, overlaps); }))
+        continue;
       grains.push_back({0, centre, false, radius});
       placed.add(grains.back());
       break;
@@ -142,6 +143,8 @@ class GeneralScene {
     if (draws.below(2) == 0 && spots_.fixed_volume > 0.0 && spots_.persistence == 0.0) {
       spots_.spread = draws.uniform(0.05, 2.0);
       spots_.wall_shear = draws.uniform(0.0, 2.0);
+      if (draws.below(2) == 0)
+        spots_.widening = {draws.uniform(0.0, 8.0), draws.uniform(0.0, 8.0), d * draws.uniform(0.1, 10.0)};
     }
   }
 

@@ -197,6 +197,36 @@ TEST(ParametersUnit, SpreadAndShearByWallsAreBounded) {
   EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("spread is 0.6 "), HasSubstr("no fixed volume")));
 }
 
+TEST(ParametersUnit, WideningIsBoundedAndOfASpread) {
+  SpotParameters spots = critical_spots();
+  EXPECT_FALSE(spots.widening.on());
+  spots.widening = {1.8, 0.8, 20.0};
+  EXPECT_THAT(refusal_of(spots), HasSubstr("a widening is of the spread, which is 0"));
+  spots.spread = 0.6;
+  for (const spot::Widening& good :
+       {spot::Widening{1.8, 0.8, 20.0}, {0.0, 8.0, 1e-3}, {8.0, 0.0, 1e9}, {1.0, 1.0, 0.0}}) {
+    spots.widening = good;
+    EXPECT_NO_THROW(spots.validate());
+  }
+  const auto refused = [&](const spot::Widening& bad) {
+    spots.widening = bad;
+    return refusal_of(spots);
+  };
+  for (const double bad : {-0.1, 8.1, infinity, -infinity, std::nan("")}) {
+    EXPECT_THAT(refused({bad, 1.0, 20.0}), AllOf(HasSubstr("times at first but"), HasSubstr("0 to 8 times (1: off)")));
+    EXPECT_THAT(refused({1.0, bad, 20.0}), AllOf(HasSubstr("times later but"), HasSubstr("0 to 8 times (1: off)")));
+  }
+  for (const double bad : {0.0, -1.0, infinity, std::nan("")})
+    EXPECT_THAT(refused({1.8, 0.8, bad}), AllOf(HasSubstr("the flow widens is "), HasSubstr("must be positive")));
+}
+
+TEST(ParametersUnit, WideningGoesFromOneFactorToTheOther) {
+  const spot::Widening widening{1.8, 0.8, 20.0};
+  EXPECT_DOUBLE_EQ(widening.factor(0.0), 1.8);
+  EXPECT_DOUBLE_EQ(widening.factor(10.0), 0.8 + std::exp(-0.5));
+  EXPECT_DOUBLE_EQ(widening.factor(1e4), 0.8);
+}
+
 TEST(ParametersUnit, FadeIsBoundedAndForBirthsThatFollowTheOutflow) {
   SpotParameters spots = scenes::paper_spots();
   EXPECT_EQ(spots.fade, 0.0);

@@ -616,13 +616,16 @@ TEST(SpotsInvariance, SpotsOfWindowsLeaveWhatThoseInTheOrderOfTimeDo) {
 }
 
 /// A flow that goes as e^(-x / 10) makes spots drift by (B / s - b_s) / 10 for each length that they climb; near the
-/// surface, where s is larger by kappa over the depth, by less.
+/// surface, where s is larger by kappa over the depth, by less. With a widening the flow's own shear counts as often as
+/// the fall so far says.
 TEST(SpotWalkStatistical, SpotsDriftAsTheFlowIsSheared) {
   const auto space = space_above_orifice();
   SpotParameters parameters = scenes::paper_spots();
   parameters.radius = 3.0;
   parameters.fixed_volume = 77.0;
   parameters.spread = 0.6;
+  const spot::Widening none, widening{4.0, 0.5, 0.05};
+  parameters.widening = widening;
   spot::FlowField flow(parameters, *space, 1.0);
   for (double x = -30.0; x <= 30.0; x += 0.75)
     for (double y = -9.0; y <= 9.0; y += 0.75)
@@ -633,9 +636,19 @@ TEST(SpotWalkStatistical, SpotsDriftAsTheFlowIsSheared) {
   const double slope = 2.0 / 3.0 * std::tanh(0.15);
   const Vector3 start(0.0, 0.0, 8.0);
   ASSERT_NEAR(flow.slope(start).x(), -slope, 0.002);
-  // As deep as on the lattice, and 4 below it.
-  for (const auto& [wall_shear, shear] : {std::pair(0.0, slope), std::pair(0.5, slope + 0.5 / 4.0)}) {
+  const double widened = widening.factor(flow.fallen(start));
+  ASSERT_GT(widened, 1.2);
+  ASSERT_LT(widened, 3.5) << "neither at first nor later";
+  struct Case {
+    double wall_shear;
+    spot::Widening widening;
+    double shear;
+  };
+  // As deep as on the lattice, 4 below the surface, and as deep as before with a widening.
+  for (const auto& [wall_shear, widens, shear] :
+       {Case{0.0, none, slope}, Case{0.5, none, slope + 0.5 / 4.0}, Case{0.0, widening, widened * slope}}) {
     parameters.wall_shear = wall_shear;
+    parameters.widening = widens;
     spot::FreeSurface surface(parameters, *space, 1.0);
     for (double x = -20.0; x <= 20.0; x += 0.5)
       for (double y = -20.0; y <= 20.0; y += 0.5) surface.add({x, y, 12.0});
@@ -654,8 +667,8 @@ TEST(SpotWalkStatistical, SpotsDriftAsTheFlowIsSheared) {
     EXPECT_NEAR(mean.x(), drift, 4.0 * error + 0.002) << "4 standard errors, and the lattice's";
     EXPECT_NEAR(mean.y(), 0.0, 4.0 * error + 0.002);
     const double deep = (parameters.spread / slope - parameters.diffusion_length()) * slope;
-    EXPECT_GT(std::abs(drift - (wall_shear > 0.0 ? deep : 0.0)), 5.0 * error)
-        << "it can be told from none, and from that without the surface";
+    EXPECT_GT(std::abs(drift - (shear != slope ? deep : 0.0)), 5.0 * error)
+        << "it can be told from none, and from that without the surface and the widening";
   }
 }
 

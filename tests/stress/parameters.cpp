@@ -73,6 +73,17 @@ void add_parameters(std::vector<Case>& cases) {
     s.spots.spread = 0.6;
     s.spots.wall_shear = v;
   });
+  const auto add_widening = [&](const std::string& what, const std::vector<double>& values,
+                                double spot::Widening::*part) {
+    add_values(cases, what, values, [part](Scene& s, double v) {
+      s.spots.spread = 0.6;
+      s.spots.widening = {1.8, 0.8, 20.0};
+      s.spots.widening.*part = v;
+    });
+  };
+  add_widening("spread 0.6, widening g_0", {0, 1e-6, 1, 8, 8.1}, &spot::Widening::at_first);
+  add_widening("spread 0.6, widening g_1", {0, 1e-6, 1, 8, 8.1}, &spot::Widening::later);
+  add_widening("spread 0.6, widening H_0 / d", {0, 1e-300, 1e-3, 3, 1e300}, &spot::Widening::length);
   add_values(cases, "surface beta", {0, 1e-6, 0.5, 3, 10, 32, 33},
              [](Scene& s, double v) { s.spots.surface_exponent = v; });
   add_values(cases, "outflow held, fade c", {0, 1e-6, 0.25, 2, 2.1}, [](Scene& s, double v) {

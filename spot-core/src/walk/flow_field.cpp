@@ -16,6 +16,9 @@ namespace {
 
 constexpr double carried_parts = 1 << 16;
 
+/// Of the weights of corners, so that sums of many steps fit.
+constexpr int dropped_bits = 8;
+
 constexpr double unknown = -1.0;
 
 /// Of a lattice cell: with less of it inside the walls, a node is taken to be in the wall.
@@ -33,7 +36,11 @@ FlowField::FlowField(const SpotParameters& parameters, const Container& containe
       spreads_(parameters.spread > 0.0),
       wall_shear_(parameters.wall_shear),
       memory_time_(calibration::climb_of_flow_memory * parameters.radius / parameters.speed),
-      step_height_(parameters.step_height) {}
+      step_height_(parameters.step_height),
+      widens_(parameters.widening.on()),
+      fall_of_carried_(parameters.missing_volume(diameter) * parameters.step_height /
+                       (calibration::packing_fraction_of_flow * carried_parts * (NodeLattice::whole >> dropped_bits))) {
+}
 
 void FlowField::add(const Move& move, double volume) {
   const double carried = volume * (move.step.z() / step_height_);
@@ -48,11 +55,12 @@ void FlowField::update(double elapsed, Communicator& communicator) {
   std::vector<std::int64_t> sums(box_.size(), 0);
   for (const Step& step : added_)
     for (const NodeLattice::Corner& corner : lattice_.corners(step.middle))
-      sums[box_.place(corner.node)] += step.carried * (corner.weight >> 8);
+      sums[box_.place(corner.node)] += step.carried * (corner.weight >> dropped_bits);
   added_.clear();
   sums = communicator.sum(std::move(sums));
   const double kept = exp(-elapsed / memory_time_);
   for (std::size_t k = 0; k < sums.size(); ++k) carried_[k] = kept * carried_[k] + static_cast<double>(sums[k]);
+  for (std::size_t k = 0; k < total_.size(); ++k) total_[k] += static_cast<double>(sums[k]);
   find_shear();
 }
 
@@ -60,6 +68,7 @@ void FlowField::grow_to(const NodeLattice::Box& box) {
   const NodeLattice::Box grown = box_.united(box);
   if (grown == box_) return;
   carried_ = box_.values_in(grown, carried_, 0.0);
+  if (widens_) total_ = box_.values_in(grown, total_, 0.0);
   walls_ = box_.values_in(grown, walls_, unknown);
   box_ = grown;
   find_volumes();
@@ -120,12 +129,14 @@ double FlowField::relative_slope(int axis, const NodeLattice::Node& node, double
 void FlowField::find_shear() {
   shear_.assign(box_.size(), 0.0);
   slope_.assign(spreads_ ? box_.size() : 0, Vector3::Zero());
+  fallen_.assign(total_.size(), 0.0);
   box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
     if (volumes_[k] == 0.0) return;
     const double here = carried_[k] / volumes_[k];
     const double x = relative_slope(0, node, here), y = relative_slope(1, node, here);
     shear_[k] = std::sqrt(x * x + y * y) + walls_[k];
     if (spreads_) slope_[k] = Vector3(x, y, 0.0);
+    if (widens_) fallen_[k] = fall_of_carried_ * total_[k] / volumes_[k];
   });
 }
 
@@ -151,6 +162,8 @@ Vector3 FlowField::slope(const Vector3& point) const {
   return slope_.empty() ? none : mean_of(slope_, point, none);
 }
 
+double FlowField::fallen(const Vector3& point) const { return fallen_.empty() ? 0.0 : mean_of(fallen_, point, 0.0); }
+
 void FlowField::replace_container(const Container& container) {
   container_ = &container;
   lattice_.replace_container(container);
@@ -163,6 +176,7 @@ void FlowField::replace_container(const Container& container) {
 void FlowField::save(Bytes& bytes) const {
   append(bytes, box_);
   append(bytes, carried_);
+  append(bytes, total_);
   append(bytes, static_cast<std::uint64_t>(added_.size()));
   for (const Step& step : added_) {
     append(bytes, step.middle);
@@ -173,7 +187,9 @@ void FlowField::save(Bytes& bytes) const {
 void FlowField::restore(ByteReader& saved) {
   box_ = take_box(saved);
   carried_ = saved.take_all<double>();
-  if (carried_.size() != box_.size()) throw InvalidState("the saved flow is damaged");
+  total_ = saved.take_all<double>();
+  if (carried_.size() != box_.size() || total_.size() != (widens_ ? box_.size() : 0))
+    throw InvalidState("the saved flow is damaged");
   for (auto n = saved.take<std::uint64_t>(); n > 0; --n) {
     const auto middle = saved.take<Vector3>();
     added_.push_back({middle, saved.take<std::int64_t>()});
@@ -185,7 +201,7 @@ void FlowField::restore(ByteReader& saved) {
 }
 
 std::size_t FlowField::memory() const {
-  return bytes_in(added_, carried_, volumes_, walls_, shear_, slope_) + lattice_.memory();
+  return bytes_in(added_, carried_, total_, volumes_, walls_, shear_, slope_, fallen_) + lattice_.memory();
 }
 
 }  // namespace spot
