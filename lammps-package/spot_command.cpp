@@ -171,11 +171,11 @@ const std::map<std::string, Reader>& readers() {
          c.spots.spread = w.not_negative("the spread");
          c.spots.wall_shear = w.not_negative("the shear by walls");
        }},
-      {"widening",
+      {"mobility",
        [](SpotCommand& c, Words& w) {
-         c.spots.widening.at_first = w.not_negative("how much shear counts at first");
-         c.spots.widening.later = w.not_negative("how much shear counts later");
-         c.spots.widening.length = w.positive("the fall with which the flow widens");
+         c.spots.mobility.at_rest = w.positive("the mobility of what has not fallen");
+         c.spots.mobility.fall = w.positive("the fall that makes a packing mobile");
+         c.spots.mobility.drift = w.positive("the drift towards what is mobile");
        }},
       {"surface",
        [](SpotCommand& c, Words& w) { c.spots.surface_exponent = w.not_negative("the exponent of the surface"); }},
@@ -340,7 +340,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"critical", precise(spots.critical_fraction, ' ', spots.exchange_length)},
           {"dilatancy", precise(spots.dilatancy)},
           {"spread", precise(spots.spread, ' ', spots.wall_shear)},
-          {"widening", precise(spots.widening.at_first, ' ', spots.widening.later, ' ', spots.widening.length)},
+          {"mobility", precise(spots.mobility.at_rest, ' ', spots.mobility.fall, ' ', spots.mobility.drift)},
           {"surface", precise(spots.surface_exponent)},
           {"fade", precise(spots.fade)},
           {"nonaffine", precise(spots.nonaffine, ' ', spots.nonaffine_length)},

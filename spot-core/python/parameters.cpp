@@ -56,17 +56,16 @@ void number(Class& bound, const char* name, Part Parameters::*part, Number Part:
       [=](Parameters& parameters, Number value) { (parameters.*part).*member = value; }, text);
 }
 
-void bind_widening(Class& c) {
-  using W = spot::Widening;
-  const auto number = [&](const char* name, double W::*member, const char* text) {
+void bind_mobility(Class& c) {
+  using M = spot::Mobility;
+  const auto number = [&](const char* name, double M::*member, const char* text) {
     c.def_property(
-        name, [=](const Parameters& parameters) { return parameters.spots.widening.*member; },
-        [=](Parameters& parameters, double value) { parameters.spots.widening.*member = value; }, text);
+        name, [=](const Parameters& parameters) { return parameters.spots.mobility.*member; },
+        [=](Parameters& parameters, double value) { parameters.spots.mobility.*member = value; }, text);
   };
-  number("shear_at_first", &W::at_first,
-         "g_0: how much the flow's own shear counts where nothing has fallen. 1: once.");
-  number("shear_later", &W::later, "g_1: how much where grains have fallen far. 1: once.");
-  number("widening_length", &W::length, "H_0: of the fall with which one becomes the other (length).");
+  number("mobility", &M::at_rest, "m_0: of what has not fallen, over that of what has fallen far. 1: all is mobile.");
+  number("mobility_fall", &M::fall, "H_1: of the fall that makes a packing mobile (length).");
+  number("mobility_drift", &M::drift, "k: of spots towards what is mobile, for each length that they climb (length).");
 }
 
 void bind_numbers(Class& c) {
@@ -91,7 +90,7 @@ void bind_numbers(Class& c) {
   number(c, "dilatancy", spots, &S::dilatancy, "a: shear s for each length of fall lowers phi_c by a s (length).");
   number(c, "spread", spots, &S::spread, "B: sheared by s, free volume spreads sideways by B / s; 0: by b_s.");
   number(c, "wall_shear", spots, &S::wall_shear, "kappa: walls shear by kappa over their half-width.");
-  bind_widening(c);
+  bind_mobility(c);
   number(c, "surface_exponent", spots, &S::surface_exponent,
          "beta: how much rather spots go where the surface is higher.");
   number(c, "fade", spots, &S::fade,

@@ -239,7 +239,7 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
        {"accuracy",  "steps",   "strength",   "relax",         "relax tol", "relax chance", "threads",
         "momentum",  "contact", "closing",    "closing 0.004", "volume",    "critical",     "critical 0.58",
         "dilatancy", "spread",  "spread 0.6", "surface",       "fade", "nonaffine", "nonaffine 0.1",
-        "widening",  "widening 1.8", "widening 1.8 0.8"})
+        "mobility",  "mobility 0.4", "mobility 0.4 1"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -389,7 +389,7 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "walls",     "add",         "cut",
                                                "block",     "cone",        "z",
                                                "plane",     "sphere",      "NULL",
-                                               "recirculate", "hopper", "v_open", "scene", "fade", "widening"};
+                                               "recirculate", "hopper", "v_open", "scene", "fade", "mobility"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -498,7 +498,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"critical", in(c.spots.critical_fraction, "")},
       {"dilatancy", in(c.spots.dilatancy, "")},
       {"spread", in(c.spots.spread, "")},
-      {"widening", in(c.spots.widening.at_first, " ") + in(c.spots.widening.later, "")},
+      {"mobility", in(c.spots.mobility.at_rest, "")},
       {"surface", in(c.spots.surface_exponent, "")},
       {"fade", in(c.spots.fade, "")},
       {"nonaffine", in(c.spots.nonaffine, "")},

@@ -49,7 +49,7 @@ class PinnedScenes {
       add(plain(time_ordered, "spread"), spreading);
       add(plain(time_ordered, "outflow"), holding_outflow);
       add(plain(time_ordered, "fade"), fading);
-      add(plain(time_ordered, "widening"), widening);
+      add(plain(time_ordered, "mobility"), mobile);
     }
   }
   const std::vector<PinnedScene>& all() const { return all_; }
@@ -143,9 +143,9 @@ class PinnedScenes {
   }
 
   /// Within the little that grains fall.
-  static void widening(PinnedScene& scene) {
+  static void mobile(PinnedScene& scene) {
     spreading(scene);
-    scene.spots.widening = {3.0, 0.5, 0.3};
+    scene.spots.mobility = {0.3, 0.3, 2.0};
   }
 
   static void let_come_and_go(PinnedScene& scene) {

@@ -263,42 +263,48 @@ TEST(FlowFieldAnalytic, AnExponentialSlopesEvenly) {
   }
 }
 
-SpotParameters widening_spots() {
+/// Spots that carry e^(kx) up past every place make grains fall by as much. On the nodes, h apart, an exponential is
+/// larger by (2 sinh(k h / 2) / (k h))^2. What has fallen is not forgotten, however long ago it was; what tells the
+/// shear is.
+TEST(FlowFieldAnalytic, APackingIsMobileWhereItHasFallen) {
+  const auto space = scenes::empty_space();
   SpotParameters spots = spreading_spots();
   spots.fixed_volume = 77.0;
-  spots.widening = {1.8, 0.8, 20.0};
-  return spots;
-}
-
-/// Where every volume c^3 is passed by one step of a newborn spot, which carries the grains' own volume w N pi / 6 up
-/// by dz, they fall by w N pi / 6 dz / (phi c^3): however long ago, where what tells the shear has long been forgotten.
-TEST(FlowFieldAnalytic, WhatHasFallenIsNeverForgotten) {
-  const auto space = scenes::empty_space();
-  const SpotParameters spots = widening_spots();
-  const double apart = 0.75;
+  spots.mobility = {0.4, 1.0, 1.5};
+  const double apart = 0.75, k = 0.2, half = 0.5 * k * spacing;
   const double fall = spots.influence * 77.0 * scenes::pi / 6.0 * spots.step_height /
-                      (spot::calibration::packing_fraction_of_flow * std::pow(apart, 3));
+                      (spot::calibration::packing_fraction_of_flow * std::pow(apart, 3)) *
+                      std::pow(std::sinh(half) / half, 2);
+  const auto steps =
+      planted({-15, -15, -6}, {15, 15, 6}, apart, [&](const Vector3& at) { return 10.0 * std::exp(k * at.x()); });
   FlowField field(spots, *space, 1.0);
   Alone alone;
   for (int times = 1; times <= 3; ++times) {
-    add(field, planted({-15, -15, -6}, {15, 15, 6}, apart, [](const Vector3&) { return 1.0; }));
+    add(field, steps);
     field.update(1e3, alone);
-    for (const Vector3& at : {Vector3(0, 0, 0), Vector3(1.1, 2.3, -0.7)})
-      EXPECT_NEAR(field.fallen(at) / (times * fall), 1.0, 1e-3) << times;
+    const auto logarithm = [&](double x) { return spots.mobility.logarithm(times * 10.0 * fall * std::exp(k * x)); };
+    for (const double x : {-3.0, 0.0, 3.0}) {
+      const double expected = (logarithm(x + spacing) - logarithm(x - spacing)) / (2.0 * spacing);
+      EXPECT_GT(expected, 0.02);
+      EXPECT_LT((field.slope_of_mobility({x, 0, 0}) - Vector3(expected, 0, 0)).norm(), 2e-3 * expected) << times;
+    }
   }
-  EXPECT_EQ(field.fallen({100, 0, 0}), 0.0);
+  EXPECT_EQ(field.slope_of_mobility({100, 0, 0}), Vector3(Vector3::Zero()));
   Bytes bytes;
   field.save(bytes);
   FlowField again(spots, *space, 1.0);
   ByteReader saved(bytes);
   again.restore(saved);
-  EXPECT_EQ(again.fallen({1.1, 2.3, -0.7}), field.fallen({1.1, 2.3, -0.7}));
-  FlowField other(spreading_spots(), *space, 1.0), without(spreading_spots(), *space, 1.0);
+  EXPECT_EQ(again.slope_of_mobility({1.1, 2.3, -0.7}), field.slope_of_mobility({1.1, 2.3, -0.7}));
+  FlowField other(spreading_spots(), *space, 1.0);
   ByteReader once_more(bytes);
   EXPECT_THROW(other.restore(once_more), spot::InvalidState) << "saved by other parameters";
-  add(without, planted({-15, -15, -6}, {15, 15, 6}, apart, [](const Vector3&) { return 1.0; }));
-  without.update(1.0, alone);
-  EXPECT_EQ(without.fallen({0, 0, 0}), 0.0) << "nobody asks";
+}
+
+TEST(FlowFieldUnit, WhereAllIsMobileNobodyAsks) {
+  const auto space = scenes::empty_space();
+  const FlowField field = field_of(random_steps(200, {-9, -7, -4}, {8, 9, 11}, 1), *space);
+  EXPECT_EQ(field.slope_of_mobility({1, 1, 1}), Vector3(Vector3::Zero()));
 }
 
 /// Between plates at +-4 they shear by kappa / 4 everywhere, besides what the flow itself does.

@@ -144,7 +144,7 @@ class GeneralScene {
       spots_.spread = draws.uniform(0.05, 2.0);
       spots_.wall_shear = draws.uniform(0.0, 2.0);
       if (draws.below(2) == 0)
-        spots_.widening = {draws.uniform(0.0, 8.0), draws.uniform(0.0, 8.0), d * draws.uniform(0.1, 10.0)};
+        spots_.mobility = {draws.uniform(0.01, 1.0), d * draws.uniform(0.1, 10.0), d * draws.uniform(0.1, 10.0)};
     }
   }
 

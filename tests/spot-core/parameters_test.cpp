@@ -197,34 +197,33 @@ TEST(ParametersUnit, SpreadAndShearByWallsAreBounded) {
   EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("spread is 0.6 "), HasSubstr("no fixed volume")));
 }
 
-TEST(ParametersUnit, WideningIsBoundedAndOfASpread) {
+TEST(ParametersUnit, MobilityIsBoundedAndNeedsASpread) {
   SpotParameters spots = critical_spots();
-  EXPECT_FALSE(spots.widening.on());
-  spots.widening = {1.8, 0.8, 20.0};
-  EXPECT_THAT(refusal_of(spots), HasSubstr("a widening is of the spread, which is 0"));
+  EXPECT_FALSE(spots.mobility.on());
+  spots.mobility = {0.4, 1.0, 1.5};
+  EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("towards what is mobile"), HasSubstr("need a spread, which is 0")));
   spots.spread = 0.6;
-  for (const spot::Widening& good :
-       {spot::Widening{1.8, 0.8, 20.0}, {0.0, 8.0, 1e-3}, {8.0, 0.0, 1e9}, {1.0, 1.0, 0.0}}) {
-    spots.widening = good;
+  for (const spot::Mobility& good : {spot::Mobility{0.4, 1.0, 1.5}, {0.01, 1e-3, 1e9}, {1.0, 0.0, 0.0}}) {
+    spots.mobility = good;
     EXPECT_NO_THROW(spots.validate());
   }
-  const auto refused = [&](const spot::Widening& bad) {
-    spots.widening = bad;
+  const auto refused = [&](const spot::Mobility& bad) {
+    spots.mobility = bad;
     return refusal_of(spots);
   };
-  for (const double bad : {-0.1, 8.1, infinity, -infinity, std::nan("")}) {
-    EXPECT_THAT(refused({bad, 1.0, 20.0}), AllOf(HasSubstr("times at first but"), HasSubstr("0 to 8 times (1: off)")));
-    EXPECT_THAT(refused({1.0, bad, 20.0}), AllOf(HasSubstr("times later but"), HasSubstr("0 to 8 times (1: off)")));
+  for (const double bad : {-0.1, 0.0, 0.009, 1.1, infinity, -infinity, std::nan("")})
+    EXPECT_THAT(refused({bad, 1.0, 1.5}), AllOf(HasSubstr("has not fallen is "), HasSubstr("from 0.01 to 1 (off)")));
+  for (const double bad : {0.0, -1.0, infinity, std::nan("")}) {
+    EXPECT_THAT(refused({0.4, bad, 1.5}), AllOf(HasSubstr("makes a packing mobile is "), HasSubstr("be positive")));
+    EXPECT_THAT(refused({0.4, 1.0, bad}), AllOf(HasSubstr("what is mobile is "), HasSubstr("be positive")));
   }
-  for (const double bad : {0.0, -1.0, infinity, std::nan("")})
-    EXPECT_THAT(refused({1.8, 0.8, bad}), AllOf(HasSubstr("the flow widens is "), HasSubstr("must be positive")));
 }
 
-TEST(ParametersUnit, WideningGoesFromOneFactorToTheOther) {
-  const spot::Widening widening{1.8, 0.8, 20.0};
-  EXPECT_DOUBLE_EQ(widening.factor(0.0), 1.8);
-  EXPECT_DOUBLE_EQ(widening.factor(10.0), 0.8 + std::exp(-0.5));
-  EXPECT_DOUBLE_EQ(widening.factor(1e4), 0.8);
+TEST(ParametersUnit, APackingBecomesMobileAsItFalls) {
+  const spot::Mobility mobility{0.4, 2.0, 1.5};
+  EXPECT_DOUBLE_EQ(mobility.logarithm(0.0), std::log(0.4));
+  EXPECT_DOUBLE_EQ(mobility.logarithm(1.0), std::log(1.0 - 0.6 * std::exp(-0.5)));
+  EXPECT_DOUBLE_EQ(mobility.logarithm(1e4), 0.0);
 }
 
 TEST(ParametersUnit, FadeIsBoundedAndForBirthsThatFollowTheOutflow) {

@@ -161,7 +161,7 @@ struct Spots {
   bool parabolic = false;
   double dilation = 0.0;
   double critical_fraction = 0.0, dilatancy = 0.0, surface_exponent = 0.0, nonaffine = 0.0, spread = 0.0;
-  bool widening = false;
+  bool mobility = false;
 };
 
 class WindowedDrainageBruteForce : public testing::TestWithParam<Spots> {};
@@ -181,7 +181,7 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   spots.nonaffine_length = 0.05;
   spots.spread = GetParam().spread;
   spots.wall_shear = 0.7;
-  if (GetParam().widening) spots.widening = {3.0, 0.5, 0.3};
+  if (GetParam().mobility) spots.mobility = {0.3, 0.3, 2.0};
   if (GetParam().parabolic) spots.profile = spot::InfluenceProfile::parabolic;
   RelaxationParameters never;
   never.tolerance = 1e6;
@@ -214,7 +214,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
                                          Spots{"Nonaffine", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.2},
                                          Spots{"Surface", 77.0, false, true, 0.0, 0.0, 0.0, 3.0},
                                          Spots{"Spread", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.6},
-                                         Spots{"Widening", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.6, true},
+                                         Spots{"Mobility", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.6, true},
                                          Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 3.0, 0.2, 0.6}),
                          [](const auto& spots) { return spots.param.name; });
 

@@ -73,17 +73,17 @@ void add_parameters(std::vector<Case>& cases) {
     s.spots.spread = 0.6;
     s.spots.wall_shear = v;
   });
-  const auto add_widening = [&](const std::string& what, const std::vector<double>& values,
-                                double spot::Widening::*part) {
+  const auto add_mobility = [&](const std::string& what, const std::vector<double>& values,
+                                double spot::Mobility::*part) {
     add_values(cases, what, values, [part](Scene& s, double v) {
       s.spots.spread = 0.6;
-      s.spots.widening = {1.8, 0.8, 20.0};
-      s.spots.widening.*part = v;
+      s.spots.mobility = {0.4, 1.0, 1.5};
+      s.spots.mobility.*part = v;
     });
   };
-  add_widening("spread 0.6, widening g_0", {0, 1e-6, 1, 8, 8.1}, &spot::Widening::at_first);
-  add_widening("spread 0.6, widening g_1", {0, 1e-6, 1, 8, 8.1}, &spot::Widening::later);
-  add_widening("spread 0.6, widening H_0 / d", {0, 1e-300, 1e-3, 3, 1e300}, &spot::Widening::length);
+  add_mobility("spread 0.6, mobility m_0", {0, 0.01, 0.4, 1, 1.1}, &spot::Mobility::at_rest);
+  add_mobility("spread 0.6, mobility H_1 / d", {0, 1e-300, 1e-3, 1, 1e300}, &spot::Mobility::fall);
+  add_mobility("spread 0.6, mobility k / d", {0, 1e-6, 1.5, 100, 1e300}, &spot::Mobility::drift);
   add_values(cases, "surface beta", {0, 1e-6, 0.5, 3, 10, 32, 33},
              [](Scene& s, double v) { s.spots.surface_exponent = v; });
   add_values(cases, "outflow held, fade c", {0, 1e-6, 0.25, 2, 2.1}, [](Scene& s, double v) {

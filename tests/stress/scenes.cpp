@@ -178,7 +178,7 @@ Scene::Scene(std::uint64_t seed)
   const double held = draws.below(3) == 0 ? 0.03 : 0.0;
   for (spot::Grain& grain : grains) grain.held = draws.uniform(0.0, 1.0) < held;
   if (spots.holds_outflow && draws.below(2) == 0) spots.fade = draws.uniform(0.1, 2.0);
-  if (spots.spread > 0.0 && draws.below(2) == 0) spots.widening = {3.0, 0.5, 10.0};
+  if (spots.spread > 0.0 && draws.below(2) == 0) spots.mobility = {0.2, 0.5, 3.0};
 }
 
 /// The bed is looser than any that flows, which is refused: so it is too shallow to be checked.

@@ -87,9 +87,9 @@ class Parameters:
     dilatancy: float
     spread: float
     wall_shear: float
-    shear_at_first: float
-    shear_later: float
-    widening_length: float
+    mobility: float
+    mobility_fall: float
+    mobility_drift: float
     surface_exponent: float
     fade: float
     nonaffine: float

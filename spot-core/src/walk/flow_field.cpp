@@ -37,7 +37,7 @@ FlowField::FlowField(const SpotParameters& parameters, const Container& containe
       wall_shear_(parameters.wall_shear),
       memory_time_(calibration::climb_of_flow_memory * parameters.radius / parameters.speed),
       step_height_(parameters.step_height),
-      widens_(parameters.widening.on()),
+      mobility_(parameters.mobility),
       fall_of_carried_(parameters.missing_volume(diameter) * parameters.step_height /
                        (calibration::packing_fraction_of_flow * carried_parts * (NodeLattice::whole >> dropped_bits))) {
 }
@@ -68,7 +68,7 @@ void FlowField::grow_to(const NodeLattice::Box& box) {
   const NodeLattice::Box grown = box_.united(box);
   if (grown == box_) return;
   carried_ = box_.values_in(grown, carried_, 0.0);
-  if (widens_) total_ = box_.values_in(grown, total_, 0.0);
+  if (mobility_.on()) total_ = box_.values_in(grown, total_, 0.0);
   walls_ = box_.values_in(grown, walls_, unknown);
   box_ = grown;
   find_volumes();
@@ -108,12 +108,14 @@ Vector3 FlowField::place_inside(const NodeLattice::Node& node) const {
   return middle;
 }
 
-/// At a node, or `otherwise` in walls, across which nothing is sheared.
-double FlowField::flow(const NodeLattice::Node& unwrapped, double otherwise) const {
+/// Of the values at the nodes of the box that at a node; `elsewhere` beyond the box, `otherwise` in walls.
+double FlowField::at(const std::vector<double>& values, double elsewhere, const NodeLattice::Node& unwrapped,
+                     double otherwise) const {
   const NodeLattice::Node node = lattice_.wrapped(unwrapped);
-  if (!box_.contains(node)) return lattice_.volume(node) > least_part_inside * lattice_.cell_volume() ? 0.0 : otherwise;
+  if (!box_.contains(node))
+    return lattice_.volume(node) > least_part_inside * lattice_.cell_volume() ? elsewhere : otherwise;
   const std::size_t k = box_.place(node);
-  return volumes_[k] > 0.0 ? carried_[k] / volumes_[k] : otherwise;
+  return volumes_[k] > 0.0 ? values[k] : otherwise;
 }
 
 /// Of the flow, over itself: two over the spacing at most.
@@ -121,23 +123,46 @@ double FlowField::relative_slope(int axis, const NodeLattice::Node& node, double
   NodeLattice::Node before = node, after = node;
   --before[static_cast<std::size_t>(axis)];
   ++after[static_cast<std::size_t>(axis)];
-  const double low = flow(before, here), high = flow(after, here);
+  const double low = at(flow_, 0.0, before, here), high = at(flow_, 0.0, after, here);
   const double mean = 0.25 * (low + high) + 0.5 * here;
   return mean > 0.0 ? (high - low) / (2.0 * lattice_.spacing()[axis] * mean) : 0.0;
 }
 
-void FlowField::find_shear() {
-  shear_.assign(box_.size(), 0.0);
-  slope_.assign(spreads_ ? box_.size() : 0, Vector3::Zero());
-  fallen_.assign(total_.size(), 0.0);
+void FlowField::find_mobility() {
+  if (!mobility_.on()) return;
+  const double at_rest = mobility_.logarithm(0.0);
+  logarithm_of_mobility_.assign(box_.size(), at_rest);
+  slope_of_mobility_.assign(box_.size(), Vector3::Zero());
+  for (std::size_t k = 0; k < volumes_.size(); ++k)
+    if (volumes_[k] > 0.0) logarithm_of_mobility_[k] = mobility_.logarithm(fall_of_carried_ * total_[k] / volumes_[k]);
   box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
     if (volumes_[k] == 0.0) return;
-    const double here = carried_[k] / volumes_[k];
+    const double here = logarithm_of_mobility_[k];
+    for (const int axis : {0, 1}) {
+      NodeLattice::Node before = node, after = node;
+      --before[static_cast<std::size_t>(axis)];
+      ++after[static_cast<std::size_t>(axis)];
+      const double low = at(logarithm_of_mobility_, at_rest, before, here);
+      const double high = at(logarithm_of_mobility_, at_rest, after, here);
+      slope_of_mobility_[k][axis] = (high - low) / (2.0 * lattice_.spacing()[axis]);
+    }
+  });
+}
+
+void FlowField::find_shear() {
+  flow_.assign(box_.size(), 0.0);
+  for (std::size_t k = 0; k < volumes_.size(); ++k)
+    if (volumes_[k] > 0.0) flow_[k] = carried_[k] / volumes_[k];
+  shear_.assign(box_.size(), 0.0);
+  slope_.assign(spreads_ ? box_.size() : 0, Vector3::Zero());
+  box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
+    if (volumes_[k] == 0.0) return;
+    const double here = flow_[k];
     const double x = relative_slope(0, node, here), y = relative_slope(1, node, here);
     shear_[k] = std::sqrt(x * x + y * y) + walls_[k];
     if (spreads_) slope_[k] = Vector3(x, y, 0.0);
-    if (widens_) fallen_[k] = fall_of_carried_ * total_[k] / volumes_[k];
   });
+  find_mobility();
 }
 
 /// Between nodes, each counted by the volume around it; `none` where there is none.
@@ -162,7 +187,10 @@ Vector3 FlowField::slope(const Vector3& point) const {
   return slope_.empty() ? none : mean_of(slope_, point, none);
 }
 
-double FlowField::fallen(const Vector3& point) const { return fallen_.empty() ? 0.0 : mean_of(fallen_, point, 0.0); }
+Vector3 FlowField::slope_of_mobility(const Vector3& point) const {
+  const Vector3 none = Vector3::Zero();
+  return slope_of_mobility_.empty() ? none : mean_of(slope_of_mobility_, point, none);
+}
 
 void FlowField::replace_container(const Container& container) {
   container_ = &container;
@@ -188,7 +216,7 @@ void FlowField::restore(ByteReader& saved) {
   box_ = take_box(saved);
   carried_ = saved.take_all<double>();
   total_ = saved.take_all<double>();
-  if (carried_.size() != box_.size() || total_.size() != (widens_ ? box_.size() : 0))
+  if (carried_.size() != box_.size() || total_.size() != (mobility_.on() ? box_.size() : 0))
     throw InvalidState("the saved flow is damaged");
   for (auto n = saved.take<std::uint64_t>(); n > 0; --n) {
     const auto middle = saved.take<Vector3>();
@@ -201,7 +229,9 @@ void FlowField::restore(ByteReader& saved) {
 }
 
 std::size_t FlowField::memory() const {
-  return bytes_in(added_, carried_, total_, volumes_, walls_, shear_, slope_, fallen_) + lattice_.memory();
+  return bytes_in(added_, carried_, total_, volumes_, flow_, walls_, shear_, slope_, logarithm_of_mobility_,
+                  slope_of_mobility_) +
+         lattice_.memory();
 }
 
 }  // namespace spot

@@ -117,9 +117,9 @@ void SpotParameters::validate_spread() const {
   if (spread > 0.0 && fixed_volume == 0.0)
     throw InvalidParameter(
         message("spread is ", spread, " but spots carry no fixed volume, by which the flow could be told"));
-  widening.validate();
-  if (widening.on() && spread == 0.0)
-    throw InvalidParameter("a widening is of the spread, which is 0: there must be none");
+  mobility.validate();
+  if (mobility.on() && spread == 0.0)
+    throw InvalidParameter("spots that drift towards what is mobile need a spread, which is 0");
 }
 
 void SpotParameters::validate_nonaffine_motion() const {

@@ -111,11 +111,11 @@ void SpotWalk::set_relative_speed(Spot& spot, double time, double relative_speed
 /// Of spots there, sideways, for each length that they climb.
 Vector3 SpotWalk::drift(const Vector3& place, const FreeSurface& surface, const FlowField& flow) const {
   const double depth = surface.height(place) - place.z();
-  const Vector3 slope = flow.slope(place);
-  double shear = flow.shear(place) + (depth > 0.0 ? parameters_.wall_shear / depth : 0.0);
-  if (parameters_.widening.on()) shear += (parameters_.widening.factor(flow.fallen(place)) - 1.0) * slope.norm();
-  if (!(shear > 0.0)) return Vector3::Zero();
-  return (parameters_.diffusion_length() - parameters_.spread / shear) * slope;
+  const double shear = flow.shear(place) + (depth > 0.0 ? parameters_.wall_shear / depth : 0.0);
+  Vector3 drift = Vector3::Zero();
+  if (shear > 0.0) drift = (parameters_.diffusion_length() - parameters_.spread / shear) * flow.slope(place);
+  if (parameters_.mobility.on()) drift += parameters_.mobility.drift * flow.slope_of_mobility(place);
+  return drift;
 }
 
 /// Chooses the direction once more, with the same number: by how much of the spot each would keep below the surface,

@@ -68,8 +68,8 @@ constexpr double largest_dilatancy = 1.0 / 3.0;
 /// Bounds of the spread and of the shear by walls. DEM's flow has 0.6 and 0.7; choices beyond which nothing was tried.
 constexpr double largest_spread = 2.0, largest_wall_shear = 4.0;
 
-/// So many times the flow's own shear counts at most. DEM's flow has 0.8 to 1.8; a choice.
-constexpr double largest_widening = 8.0;
+/// Of what has not fallen, at least: less would hold spots off for good. A choice; 0.4 was tried.
+constexpr double least_mobility = 0.01;
 
 /// So far, in spacings of the lattice, walls are looked for from a node on either side: beyond, they shear next to
 /// nothing.

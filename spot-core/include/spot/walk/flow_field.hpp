@@ -30,7 +30,7 @@ double shear_by_walls(double kappa, const Container& container, const Vector3& p
 ///
 /// Steps are counted on the nodes of a NodeLattice, R_s apart, but no closer than grains are; those that were made
 /// longer ago count for less, by a factor of e after calibration::climb_of_flow_memory. How far grains have fallen past
-/// a place in all, which Widening asks for, all steps tell alike, at calibration::packing_fraction_of_flow.
+/// a place in all, which the Mobility there goes with, all steps tell alike, at calibration::packing_fraction_of_flow.
 class FlowField {
  public:
   /// `diameter`: of grains. The container must outlive the field, or be replaced.
@@ -48,9 +48,9 @@ class FlowField {
   /// grad_h u / u at a point (1 / length); 0 where no spot has been. As of the last update.
   Vector3 slope(const Vector3& point) const;
 
-  /// How far grains have fallen past a point since the start (length); 0 where no spot has been, and if there is no
-  /// widening. As of the last update.
-  double fallen(const Vector3& point) const;
+  /// grad_h ln m at a point, m being the Mobility there (1 / length); 0 where no spot has been, and if all is mobile.
+  /// As of the last update.
+  Vector3 slope_of_mobility(const Vector3& point) const;
 
   /// Works out the volume inside the walls anew, as after these changed.
   void replace_container(const Container& container);
@@ -73,7 +73,8 @@ class FlowField {
   void find_walls();
   Vector3 place_inside(const NodeLattice::Node& node) const;
   void find_shear();
-  double flow(const NodeLattice::Node& node, double otherwise) const;
+  void find_mobility();
+  double at(const std::vector<double>& values, double elsewhere, const NodeLattice::Node& node, double otherwise) const;
   double relative_slope(int axis, const NodeLattice::Node& node, double here) const;
   template <typename Value>
   Value mean_of(const std::vector<Value>& values, const Vector3& point, Value none) const;
@@ -83,17 +84,19 @@ class FlowField {
   bool spreads_;
   double wall_shear_;
   double memory_time_, step_height_;
-  bool widens_;
-  double fall_of_carried_;  // how far what is carried is fallen, in the volume that it is carried through
+  Mobility mobility_;
+  double fall_of_carried_;  // how far grains fall, times the volume through which it is carried
   std::vector<Step> added_;
   NodeLattice::Box box_;         // of the nodes where steps have been counted
   std::vector<double> carried_;  // at these nodes: sums of steps, each counted for less the older it is
-  std::vector<double> total_;    // the same, counted alike, if there is a widening
+  std::vector<double> total_;    // the same, each counted alike, if not all is mobile
   std::vector<double> volumes_;  // inside the walls, around the same nodes; 0 where there is next to none
+  std::vector<double> flow_;     // one over the other
   std::vector<double> walls_;    // what they shear, at the same nodes; below 0 where that is not known yet
   std::vector<double> shear_;    // at the same nodes
   std::vector<Vector3> slope_;   // at the same nodes, if there is a spread
-  std::vector<double> fallen_;   // at the same nodes, if there is a widening
+  std::vector<double> logarithm_of_mobility_;  // at the same nodes, if not all is mobile
+  std::vector<Vector3> slope_of_mobility_;     // and its slope
 };
 
 }  // namespace spot

@@ -5,7 +5,7 @@
 
 #include "spot/walk/influence_profile.hpp"
 #include "spot/walk/injection.hpp"
-#include "spot/walk/widening.hpp"
+#include "spot/walk/mobility.hpp"
 
 namespace spot {
 
@@ -50,7 +50,7 @@ struct SpotParameters {
   double spread = 0.0;
   /// kappa: walls shear what falls between them by kappa / h, h being half_width(). 0: they don't.
   double wall_shear = 0.0;
-  Widening widening = {};  ///< of the flow, as its bed goes on falling
+  Mobility mobility = {};  ///< of the packing, by how far it has fallen
   /// beta: near the free surface, how much rather spots go where it is higher (2010's rule, FreeSurface). 0: they do
   /// not care (2006).
   double surface_exponent = 0.0;

@@ -34,8 +34,8 @@ struct Spot {
 ///
 /// (FlowField), the depth being that below the free surface. So they spread as b = B / s would have them, without steps
 /// that get longer the less is sheared: what nothing shears comes down as a plug, which walls and the surface limit
-/// (docs/notes/2026-11-29-plug-flow.md). With a Widening, what counts of s depends on how far
-/// grains have fallen there.
+/// (docs/notes/2026-11-29-plug-flow.md). They drift towards what is
+/// mobile, too (Mobility).
 ///
 /// A spot is born uniformly on what is R_s inside the rim of an outlet, and R_s below it: it
 /// enters the packing with its whole influence, so that as much leaves through the outlet as the spot
