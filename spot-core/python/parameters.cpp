@@ -48,24 +48,29 @@ const spot::InfluenceProfile* profile_named(const std::string& name) {
 
 using Class = py::class_<Parameters>;
 
+/// A number; `of` gives the part of Parameters that has it.
+template <typename Of, typename Part, typename Number>
+void number_of(Class& bound, const char* name, Of of, Number Part::*member, const char* text) {
+  bound.def_property(
+      name, [=](Parameters& parameters) { return of(parameters).*member; },
+      [=](Parameters& parameters, Number value) { of(parameters).*member = value; }, text);
+}
+
 /// A number of one of the parts of Parameters.
 template <typename Part, typename Number>
 void number(Class& bound, const char* name, Part Parameters::*part, Number Part::*member, const char* text) {
-  bound.def_property(
-      name, [=](const Parameters& parameters) { return (parameters.*part).*member; },
-      [=](Parameters& parameters, Number value) { (parameters.*part).*member = value; }, text);
+  number_of(
+      bound, name, [=](Parameters& parameters) -> Part& { return parameters.*part; }, member, text);
 }
 
 void bind_mobility(Class& c) {
   using M = spot::Mobility;
-  const auto number = [&](const char* name, double M::*member, const char* text) {
-    c.def_property(
-        name, [=](const Parameters& parameters) { return parameters.spots.mobility.*member; },
-        [=](Parameters& parameters, double value) { parameters.spots.mobility.*member = value; }, text);
-  };
-  number("mobility", &M::at_rest, "m_0: of what has not fallen, over that of what has fallen far. 1: all is mobile.");
-  number("mobility_fall", &M::fall, "H_1: of the fall that makes a packing mobile (length).");
-  number("mobility_drift", &M::drift, "k: of spots towards what is mobile, for each length that they climb (length).");
+  const auto of = [](Parameters& parameters) -> M& { return parameters.spots.mobility; };
+  number_of(c, "mobility", of, &M::at_rest,
+            "m_0: of what has not fallen, over that of what has fallen far. 1: all is mobile.");
+  number_of(c, "mobility_fall", of, &M::fall, "H_1: of the fall that makes a packing mobile (length).");
+  number_of(c, "mobility_drift", of, &M::drift,
+            "k: of spots towards what is mobile, for each length that they climb (length).");
 }
 
 void bind_numbers(Class& c) {

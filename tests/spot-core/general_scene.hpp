@@ -196,7 +196,7 @@ class GeneralScene {
                          ", w = ", spots_.influence, ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation,
                          ", phi_c = ", spots_.critical_fraction, ", l = ", spots_.exchange_length,
                          ", a = ", spots_.dilatancy, ", beta = ", spots_.surface_exponent, ", S = ", spots_.nonaffine,
-                         ", B = ", spots_.spread);
+                         ", B = ", spots_.spread, ", m_0 = ", spots_.mobility.at_rest);
   }
 
  private:

@@ -275,7 +275,7 @@ Bytes later(const Bytes& saved, std::int64_t steps, std::int64_t spots, std::int
   for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // ends of the lattice of counts
   spot::append(bytes, reader.take_all<std::int64_t>());
   for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // of that of the flow
-  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take_all<double>());
+  for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take_all<double>());  // what was carried of late, and in all
   EXPECT_EQ(shift(std::uint64_t{0}), 0u) << "steps that the flow has not taken in";
   for (int k = 0; k < 2; ++k) spot::append(bytes, reader.take<std::array<int, 3>>());  // and of the surface
   spot::append(bytes, reader.take_all<double>());

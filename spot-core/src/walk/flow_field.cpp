@@ -61,7 +61,7 @@ void FlowField::update(double elapsed, Communicator& communicator) {
   const double kept = exp(-elapsed / memory_time_);
   for (std::size_t k = 0; k < sums.size(); ++k) carried_[k] = kept * carried_[k] + static_cast<double>(sums[k]);
   for (std::size_t k = 0; k < total_.size(); ++k) total_[k] += static_cast<double>(sums[k]);
-  find_shear();
+  find_slopes();
 }
 
 void FlowField::grow_to(const NodeLattice::Box& box) {
@@ -118,51 +118,55 @@ double FlowField::at(const std::vector<double>& values, double elsewhere, const 
   return volumes_[k] > 0.0 ? values[k] : otherwise;
 }
 
-/// Of the flow, over itself: two over the spacing at most.
-double FlowField::relative_slope(int axis, const NodeLattice::Node& node, double here) const {
+/// The values on either side of a node along an axis: in walls, across which nothing changes, that at the node.
+std::pair<double, double> FlowField::beside(const std::vector<double>& values, double elsewhere, int axis,
+                                            const NodeLattice::Node& node) const {
   NodeLattice::Node before = node, after = node;
   --before[static_cast<std::size_t>(axis)];
   ++after[static_cast<std::size_t>(axis)];
-  const double low = at(flow_, 0.0, before, here), high = at(flow_, 0.0, after, here);
-  const double mean = 0.25 * (low + high) + 0.5 * here;
-  return mean > 0.0 ? (high - low) / (2.0 * lattice_.spacing()[axis] * mean) : 0.0;
+  const double here = values[box_.place(node)];
+  return {at(values, elsewhere, before, here), at(values, elsewhere, after, here)};
 }
 
-void FlowField::find_mobility() {
-  if (!mobility_.on()) return;
-  const double at_rest = mobility_.logarithm(0.0);
-  logarithm_of_mobility_.assign(box_.size(), at_rest);
-  slope_of_mobility_.assign(box_.size(), Vector3::Zero());
-  for (std::size_t k = 0; k < volumes_.size(); ++k)
-    if (volumes_[k] > 0.0) logarithm_of_mobility_[k] = mobility_.logarithm(fall_of_carried_ * total_[k] / volumes_[k]);
+void FlowField::find_shear() {
+  std::vector<double> flow(box_.size(), 0.0);
+  for (std::size_t k = 0; k < flow.size(); ++k)
+    if (volumes_[k] > 0.0) flow[k] = carried_[k] / volumes_[k];
+  // Over the flow itself: two over the spacing at most.
+  const auto relative_slope = [&](int axis, const NodeLattice::Node& node, double here) {
+    const auto [low, high] = beside(flow, 0.0, axis, node);
+    const double mean = 0.25 * (low + high) + 0.5 * here;
+    return mean > 0.0 ? (high - low) / (2.0 * lattice_.spacing()[axis] * mean) : 0.0;
+  };
+  shear_.assign(box_.size(), 0.0);
+  slope_.assign(spreads_ ? box_.size() : 0, Vector3::Zero());
   box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
     if (volumes_[k] == 0.0) return;
-    const double here = logarithm_of_mobility_[k];
+    const double x = relative_slope(0, node, flow[k]), y = relative_slope(1, node, flow[k]);
+    shear_[k] = std::sqrt(x * x + y * y) + walls_[k];
+    if (spreads_) slope_[k] = Vector3(x, y, 0.0);
+  });
+}
+
+void FlowField::find_slope_of_mobility() {
+  if (!mobility_.on()) return;
+  const double at_rest = mobility_.logarithm(0.0);
+  std::vector<double> logarithm(box_.size(), at_rest);
+  for (std::size_t k = 0; k < logarithm.size(); ++k)
+    if (volumes_[k] > 0.0) logarithm[k] = mobility_.logarithm(fall_of_carried_ * total_[k] / volumes_[k]);
+  slope_of_mobility_.assign(box_.size(), Vector3::Zero());
+  box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
+    if (volumes_[k] == 0.0) return;
     for (const int axis : {0, 1}) {
-      NodeLattice::Node before = node, after = node;
-      --before[static_cast<std::size_t>(axis)];
-      ++after[static_cast<std::size_t>(axis)];
-      const double low = at(logarithm_of_mobility_, at_rest, before, here);
-      const double high = at(logarithm_of_mobility_, at_rest, after, here);
+      const auto [low, high] = beside(logarithm, at_rest, axis, node);
       slope_of_mobility_[k][axis] = (high - low) / (2.0 * lattice_.spacing()[axis]);
     }
   });
 }
 
-void FlowField::find_shear() {
-  flow_.assign(box_.size(), 0.0);
-  for (std::size_t k = 0; k < volumes_.size(); ++k)
-    if (volumes_[k] > 0.0) flow_[k] = carried_[k] / volumes_[k];
-  shear_.assign(box_.size(), 0.0);
-  slope_.assign(spreads_ ? box_.size() : 0, Vector3::Zero());
-  box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
-    if (volumes_[k] == 0.0) return;
-    const double here = flow_[k];
-    const double x = relative_slope(0, node, here), y = relative_slope(1, node, here);
-    shear_[k] = std::sqrt(x * x + y * y) + walls_[k];
-    if (spreads_) slope_[k] = Vector3(x, y, 0.0);
-  });
-  find_mobility();
+void FlowField::find_slopes() {
+  find_shear();
+  find_slope_of_mobility();
 }
 
 /// Between nodes, each counted by the volume around it; `none` where there is none.
@@ -198,7 +202,7 @@ void FlowField::replace_container(const Container& container) {
   find_volumes();
   walls_.assign(box_.size(), unknown);
   find_walls();
-  find_shear();
+  find_slopes();
 }
 
 void FlowField::save(Bytes& bytes) const {
@@ -225,13 +229,11 @@ void FlowField::restore(ByteReader& saved) {
   find_volumes();
   walls_.assign(box_.size(), unknown);
   find_walls();
-  find_shear();
+  find_slopes();
 }
 
 std::size_t FlowField::memory() const {
-  return bytes_in(added_, carried_, total_, volumes_, flow_, walls_, shear_, slope_, logarithm_of_mobility_,
-                  slope_of_mobility_) +
-         lattice_.memory();
+  return bytes_in(added_, carried_, total_, volumes_, walls_, shear_, slope_, slope_of_mobility_) + lattice_.memory();
 }
 
 }  // namespace spot

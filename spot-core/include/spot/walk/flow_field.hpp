@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "spot/base/bytes.hpp"
@@ -72,10 +73,12 @@ class FlowField {
   void find_volumes();
   void find_walls();
   Vector3 place_inside(const NodeLattice::Node& node) const;
+  void find_slopes();
   void find_shear();
-  void find_mobility();
+  void find_slope_of_mobility();
   double at(const std::vector<double>& values, double elsewhere, const NodeLattice::Node& node, double otherwise) const;
-  double relative_slope(int axis, const NodeLattice::Node& node, double here) const;
+  std::pair<double, double> beside(const std::vector<double>& values, double elsewhere, int axis,
+                                   const NodeLattice::Node& node) const;
   template <typename Value>
   Value mean_of(const std::vector<Value>& values, const Vector3& point, Value none) const;
 
@@ -87,16 +90,14 @@ class FlowField {
   Mobility mobility_;
   double fall_of_carried_;  // how far grains fall, times the volume through which it is carried
   std::vector<Step> added_;
-  NodeLattice::Box box_;         // of the nodes where steps have been counted
-  std::vector<double> carried_;  // at these nodes: sums of steps, each counted for less the older it is
-  std::vector<double> total_;    // the same, each counted alike, if not all is mobile
-  std::vector<double> volumes_;  // inside the walls, around the same nodes; 0 where there is next to none
-  std::vector<double> flow_;     // one over the other
-  std::vector<double> walls_;    // what they shear, at the same nodes; below 0 where that is not known yet
-  std::vector<double> shear_;    // at the same nodes
-  std::vector<Vector3> slope_;   // at the same nodes, if there is a spread
-  std::vector<double> logarithm_of_mobility_;  // at the same nodes, if not all is mobile
-  std::vector<Vector3> slope_of_mobility_;     // and its slope
+  NodeLattice::Box box_;                    // of the nodes where steps have been counted
+  std::vector<double> carried_;             // at these nodes: sums of steps, each counted for less the older it is
+  std::vector<double> total_;               // the same, each counted alike, if not all is mobile
+  std::vector<double> volumes_;             // inside the walls, around the same nodes; 0 where there is next to none
+  std::vector<double> walls_;               // what they shear, at the same nodes; below 0 where that is not known yet
+  std::vector<double> shear_;               // at the same nodes
+  std::vector<Vector3> slope_;              // at the same nodes, if there is a spread
+  std::vector<Vector3> slope_of_mobility_;  // at the same nodes, if not all is mobile
 };
 
 }  // namespace spot
