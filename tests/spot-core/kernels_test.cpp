@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -160,6 +161,24 @@ TEST(KernelsInvariance, TiltedDisplacementIsTheSameInEveryBuild) {
     base.displace_tilted(tilted.all(), tilted.own(), middle, reach, by, 0.0f);
     base.displace(straight.all(), middle, reach, by);
     expect_same(tilted.points(start), straight.points(start), base);
+  }
+}
+
+TEST(KernelsInvariance, MovesAreCountedForWhatIsInReach) {
+  const auto start = points_in_box(400, 6.0, 3);
+  const Point middle = point_at({3, 3, 3});
+  std::vector<std::uint32_t> expected;
+  for (const Point& point : start)
+    expected.push_back(point.state == Point::free && squared_distance(point, middle) <= radius * radius ? 2 : 0);
+  EXPECT_GT(std::count(expected.begin(), expected.end(), 2u), 20);
+  for (const Kernels* build : spot::kernels::runnable()) {
+    Places places(start);
+    std::vector<std::uint32_t> received(start.size(), 0);
+    for (int twice = 0; twice < 2; ++twice) {
+      build->count_received(places.all(), middle, uniform, received.data());
+      build->count_received(places.none(), middle, uniform, received.data());
+    }
+    EXPECT_EQ(received, expected) << build->instruction_set;
   }
 }
 

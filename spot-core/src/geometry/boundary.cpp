@@ -119,10 +119,22 @@ bool Boundary::lies_on(const Vector3& point, std::size_t first, std::size_t seco
          std::abs(surfaces_[second]->depth(point)) < tolerance_;
 }
 
+/// Is all inside that is no farther than this? Not found where a surface comes as close, be it a wall there or not.
+bool Boundary::is_inside_to(const Vector3& place, double distance) const {
+  Sides sides;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    const double depth = surfaces_[k]->depth(place);
+    if (std::abs(depth) <= distance + tolerance_) return false;
+    sides.set(k, depth > 0.0);
+  }
+  return matches(whole_, sides);
+}
+
 std::optional<WallOnPath> Boundary::first_wall(const Vector3& from, const Vector3& to) const {
   const Vector3 along = to - from;
   const double length = along.norm();
   if (!(length > 0.0)) return std::nullopt;
+  if (is_inside_to(from, length)) return std::nullopt;
   const double gap = 1e-3 * tolerance_ / length;  // between crossings that are one
   std::array<double, 2 * most_surfaces + 1> shares;
   std::size_t n = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "packing/kernels.hpp"
 #include "packing/wrapped_integers.hpp"
@@ -232,11 +233,18 @@ void BlockMoves::add_drift(Part& part, std::size_t first, std::int32_t limit) {
 // ---- displacements
 
 void BlockMoves::apply(std::size_t first, std::size_t end, Workers& workers, MovesReceived* received) {
-  if (received) received_.assign(cells_.slots(), 0);
+  if (received) received_.resize(cells_.slots(), 0);
   workers.run([&](int worker) { apply(parts_[static_cast<std::size_t>(worker)], first, end, received != nullptr); });
-  if (!received) return;
-  for (std::size_t slot = 0; slot < received_.size(); ++slot)
-    if (received_[slot] > 0) (*received)[cells_.ids[slot]] += received_[slot];
+  if (received)
+    for (const Part& part : parts_) hand_over_received(part, *received);
+}
+
+void BlockMoves::hand_over_received(const Part& part, MovesReceived& received) {
+  for (const CellRow& row : part.reached)
+    visit_blocks(row, [&](std::uint32_t block) {
+      for (std::uint32_t slot = block * kernels::lanes; slot < (block + 1) * kernels::lanes; ++slot)
+        if (const std::uint32_t moves = std::exchange(received_[slot], 0)) received[cells_.ids[slot]] += moves;
+    });
 }
 
 /// The drift that was added for moves beyond the end is taken back.
@@ -248,7 +256,7 @@ void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool coun
       cells_.unrelaxed[cell] = std::min(cells_.unrelaxed[cell] + Cells::parts_of_move, most_unrelaxed);
     });
     visit_images(part, m, [&](const kernels::Places& places, const Point& middle) {
-      if (count) count_received(places, middle);
+      if (count) kernels_.count_received(places, middle, reach_, received_.data());
       displace(places, middle, m);
     });
   }
@@ -261,20 +269,6 @@ void BlockMoves::displace(const kernels::Places& places, const Point& middle, st
                              reach_, step, tilt_unit_ * static_cast<float>(std::abs(step.z)));
   else
     kernels_.displace(places, middle, reach_, step);
-}
-
-/// Counts a move for the grains that it is about to move.
-void BlockMoves::count_received(const kernels::Places& places, const Point& middle) {
-  for (std::size_t k = 0; k < places.count; ++k)
-    for (std::uint32_t slot = places.blocks[k] * kernels::lanes, end = slot + kernels::lanes; slot < end; ++slot) {
-      const auto square_of = [](std::int32_t at, std::int32_t from) {
-        const auto apart = static_cast<float>(minus(at, from));
-        return apart * apart;
-      };
-      const float squared = (square_of(places.x[slot], middle.x) + square_of(places.y[slot], middle.y)) +
-                            square_of(places.z[slot], middle.z);
-      if (places.state_squared[slot] == 0.0f && squared <= reach_.radius_squared) ++received_[slot];
-    }
 }
 
 void BlockMoves::write_back(std::uint32_t cell) {

@@ -73,6 +73,9 @@ struct Kernels {
   void (*displace_tilted)(const Places& places, const TiltsOfPlaces& tilts, const Point& middle, const Reach& reach,
                           const Point& by, float unit);
 
+  /// Counts a move for each place that it may displace.
+  void (*count_received)(const Places& places, const Point& middle, const Reach& reach, std::uint32_t* received);
+
   /// For each of n grains, the sum of the pushes of its neighbours, and how deep they overlap it: share * (d - r) along
   /// the line of centres for r < d, each component cut to whole quanta; the pair's share if the neighbour is swept, the
   /// fixed one if not. (d - r) / r is expanded in s = 1 - r^2/d^2, good to 1e-4 of itself for overlaps up to 0.05 d;

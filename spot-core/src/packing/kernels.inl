@@ -130,6 +130,17 @@ int enclosed_volume_of_unequal(const Places& places, const spot::GrainSize* size
   return enclosed;
 }
 
+void count_received(const Places& places, const Point& middle, const Reach& reach, std::uint32_t* __restrict received) {
+  const Places of = places;  // a copy, which no write to `received` can change
+  const Point around = middle;
+  const float limit = reach.radius_squared;
+  visit_slots(of, [&](std::size_t i) {
+    const float squared = (square(of.x[i] - around.x) + square(of.y[i] - around.y)) +
+                          (square(of.z[i] - around.z) + of.state_squared[i]);
+    received[i] += squared <= limit ? 1u : 0u;
+  });
+}
+
 #ifndef __AVX2__
 
 int enclosed_volume(const Places& places, const Point& middle, const Reach& reach) {
@@ -540,6 +551,7 @@ const Kernels SPOT_KERNELS = {SPOT_INSTRUCTION_SET,
                               &enclosed_volume,
                               &displace,
                               &displace_tilted,
+                              &count_received,
                               &push_off_neighbours,
                               &enclosed_volume_of_unequal,
                               &push_off_unequal_neighbours,

@@ -78,6 +78,7 @@ class Boundary {
   Sides sides_of(const Vector3& place) const;
   static bool matches(const Node& node, const Sides& sides);
   bool changes_across(std::size_t surface, Sides sides) const;
+  bool is_inside_to(const Vector3& place, double distance) const;
   bool lies_on(const Vector3& point, std::size_t first, std::size_t second) const;
   std::vector<Candidate> candidates(const Vector3& place, double reach) const;
   template <typename Visit>

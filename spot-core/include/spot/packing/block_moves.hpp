@@ -97,7 +97,7 @@ class BlockMoves {
   void add_drift(Part& part, std::size_t first, std::int32_t limit);
   void apply(Part& part, std::size_t first, std::size_t end, bool count);
   void displace(const kernels::Places& places, const Point& middle, std::size_t move) const;
-  void count_received(const kernels::Places& places, const Point& middle);
+  void hand_over_received(const Part& part, MovesReceived& received);
 
   Cells& cells_;
   const kernels::Kernels& kernels_;
@@ -107,7 +107,7 @@ class BlockMoves {
   float tilt_unit_ = 0.0f;             // NonaffineMotion::unit()
   Reach reach_{};
   std::vector<int> enclosed_;            // volume of own grains, by each move
-  std::vector<std::uint32_t> received_;  // moves of the grain in each slot, where they are counted
+  std::vector<std::uint32_t> received_;  // moves of the grain in each slot, if counted, until they are handed over
   bool must_rebuild_ = false;
 };
 
