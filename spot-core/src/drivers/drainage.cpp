@@ -103,12 +103,6 @@ std::vector<Grain> Drainage::take_drained() {
   return drained;
 }
 
-MovesReceived Drainage::take_moves_received() {
-  MovesReceived received;
-  if (received_) received.swap(*received_);
-  return received;
-}
-
 void Drainage::add_drained(const std::vector<Grain>& grains, Spots& spots) {
   for (const Grain& grain : grains)
     spots.count_drained(container().nearest_outlet_index(grain.position),

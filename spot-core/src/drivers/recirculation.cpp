@@ -60,6 +60,8 @@ class Room {
     height_ = std::max(height_, above_ ? other.z() + std::sqrt(squared - distance) : infinite);
   }
 
+  double x() const { return at_.x(); }
+
   /// At which the place is free, at the lowest, as far as was counted.
   double height() const { return height_; }
 
@@ -71,12 +73,42 @@ class Room {
   double height_ = -infinite;
 };
 
+/// Rooms in increasing order of x, so that a grain meets those only that it may be in.
+class RoomsByX {
+ public:
+  /// `reach`: at least of the largest grain to a room that it is in.
+  RoomsByX(std::vector<Room>& rooms, double reach, const Periodic& periodic) : reach_(reach) {
+    for (Room& room : rooms) {
+      by_x_.push_back({room.x(), &room});
+      if (!periodic.along(0)) continue;
+      for (const double period : {-periodic.length(0), periodic.length(0)}) by_x_.push_back({room.x() + period, &room});
+    }
+    std::sort(by_x_.begin(), by_x_.end(), [](const Entry& a, const Entry& b) { return a.x < b.x; });
+  }
+
+  void add(const Grain& grain, double radius) {
+    const double x = grain.position.x();
+    auto entry =
+        std::lower_bound(by_x_.begin(), by_x_.end(), x - reach_, [](const Entry& e, double at) { return e.x < at; });
+    for (; entry != by_x_.end() && entry->x <= x + reach_; ++entry) entry->room->add(grain.position, radius);
+  }
+
+ private:
+  struct Entry {
+    double x;
+    Room* room;
+  };
+  double reach_;
+  std::vector<Entry> by_x_;
+};
+
 /// Counts the grains of all ranks. Returns the height of each room, and last that of the bed.
 std::vector<double> free_heights(const Drainage& drainage, std::vector<Room>& rooms, double diameter,
-                                 Communicator& communicator) {
+                                 const Periodic& periodic, Communicator& communicator) {
   double highest = -infinite;
+  RoomsByX by_x(rooms, (1.0 + 2.0 * gap) * diameter, periodic);
   drainage.visit_grains([&](const Grain& grain) {
-    for (Room& room : rooms) room.add(grain.position, radius_in(diameter, grain));
+    by_x.add(grain, radius_in(diameter, grain));
     highest = std::max(highest, grain.position.z() + diameter);
   });
   std::vector<double> heights;
@@ -124,7 +156,7 @@ std::vector<Grain> Recirculation::place_all(const Drainage& drainage, std::vecto
       grain.position = draw(grain.id, time, attempt);
       rooms.emplace_back(grain, diameter_, periodic, inlet_.on_surface);
     }
-    const std::vector<double> heights = free_heights(drainage, rooms, diameter_, communicator);
+    const std::vector<double> heights = free_heights(drainage, rooms, diameter_, periodic, communicator);
     std::vector<Grain> left;
     for (std::size_t k = 0; k < waiting.size(); ++k) {
       Grain grain = waiting[k];

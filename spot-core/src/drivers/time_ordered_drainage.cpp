@@ -96,7 +96,7 @@ void TimeOrderedDrainage::carry_out(Move move) {
     const int enclosed = enclosed_volume(packing_, near_, move, spot_parameters());
     move.weight = weigh(move, enclosed, spots_.carry(move, enclosed, container()));
   }
-  const int enclosed = displace(packing_, near_, move, spot_parameters(), received());
+  const int enclosed = displace(packing_, near_, move, spot_parameters(), received_ ? &*received_ : nullptr);
   count_move(enclosed);
   if (enclosed == 0) {
     // Below the outlets a spot may meet no grains yet; above it, it has come out at the top of the packing.

@@ -137,7 +137,7 @@ void WindowedDrainage::displace() {
   for (const SharedMove& shared : moves_.all()) displacing_.push_back(shared.move);
   packing_.displace(
       displacing_, spot_parameters(), [this](const auto& enclosed, auto& moves) { weigh(enclosed, moves); },
-      container(), *workers_, received());
+      container(), *workers_);
 }
 
 /// `enclosed`: volume of this rank's grains in each move.

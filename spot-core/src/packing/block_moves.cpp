@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "packing/kernels.hpp"
 #include "packing/wrapped_integers.hpp"
@@ -232,23 +231,12 @@ void BlockMoves::add_drift(Part& part, std::size_t first, std::int32_t limit) {
 
 // ---- displacements
 
-void BlockMoves::apply(std::size_t first, std::size_t end, Workers& workers, MovesReceived* received) {
-  if (received) received_.resize(cells_.slots(), 0);
-  workers.run([&](int worker) { apply(parts_[static_cast<std::size_t>(worker)], first, end, received != nullptr); });
-  if (received)
-    for (const Part& part : parts_) hand_over_received(part, *received);
-}
-
-void BlockMoves::hand_over_received(const Part& part, MovesReceived& received) {
-  for (const CellRow& row : part.reached)
-    visit_blocks(row, [&](std::uint32_t block) {
-      for (std::uint32_t slot = block * kernels::lanes; slot < (block + 1) * kernels::lanes; ++slot)
-        if (const std::uint32_t moves = std::exchange(received_[slot], 0)) received[cells_.ids[slot]] += moves;
-    });
+void BlockMoves::apply(std::size_t first, std::size_t end, Workers& workers, std::uint32_t* received) {
+  workers.run([&](int worker) { apply(parts_[static_cast<std::size_t>(worker)], first, end, received); });
 }
 
 /// The drift that was added for moves beyond the end is taken back.
-void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool count) {
+void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, std::uint32_t* received) {
   for (; part.counted > end; --part.counted)
     part.visit_cells(part.counted - 1, [&](std::uint32_t cell) { cells_.drift[cell] -= lengths_[part.counted - 1]; });
   for (std::size_t m = first; m < end; ++m) {
@@ -256,7 +244,7 @@ void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, bool coun
       cells_.unrelaxed[cell] = std::min(cells_.unrelaxed[cell] + Cells::parts_of_move, most_unrelaxed);
     });
     visit_images(part, m, [&](const kernels::Places& places, const Point& middle) {
-      if (count) kernels_.count_received(places, middle, reach_, received_.data());
+      if (received) kernels_.count_received(places, middle, reach_, received);
       displace(places, middle, m);
     });
   }
@@ -284,7 +272,7 @@ void BlockMoves::write_back(Workers& workers) {
 }
 
 std::size_t BlockMoves::memory() const {
-  std::size_t bytes = bytes_in(lengths_, parts_, middles_, steps_, enclosed_, received_);
+  std::size_t bytes = bytes_in(lengths_, parts_, middles_, steps_, enclosed_);
   for (const Part& part : parts_)
     bytes += bytes_in(part.rows, part.shifts, part.end_of_rows, part.reached, part.blocks, part.enclosed, part.work);
   return bytes;

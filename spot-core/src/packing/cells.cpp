@@ -157,9 +157,11 @@ void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, cons
 void Cells::follow(std::uint32_t slot, std::uint32_t from) {
   corrections[slot] = corrections[from];
   if (tilted_) tilts.set(slot, tilts[from]);
+  for (SlotData* data : attached_) data->follow(slot, from);
 }
 
 void Cells::vacate(std::uint32_t slot) {
+  for (SlotData* data : attached_) data->vacate(slot);
   ids[slot] = -1;
   points[slot] = references[slot] = nobody;
   coordinates.set(slot, nobody);

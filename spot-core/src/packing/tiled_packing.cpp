@@ -53,6 +53,7 @@ TiledPacking::TiledPacking(double diameter, double extent, const Periodic& perio
     : kernels_(kernels::best()),
       communicator_(std::move(communicator)),
       cells_(CellLattice(diameter, extent, periodic)),
+      received_(cells_),
       walls_(cells_),
       lists_(cells_, walls_, kernels_),
       ghosts_(cells_, lists_, communicator_),
@@ -88,6 +89,7 @@ Place TiledPacking::put(const Grain& grain, std::int32_t state) {
 }
 
 void TiledPacking::set_slabs(const Slabs& slabs) {
+  received_.hand_over();
   cells_.hold(slabs, communicator_->rank());
   work_.assign(static_cast<std::size_t>(cells_.own_layers()), 0);
 }
@@ -207,13 +209,13 @@ void TiledPacking::note_unsupported_above(std::uint32_t slot) {
 // ---- moves
 
 void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spots, const Weigh& weigh,
-                            const Container& container, Workers& workers, MovesReceived* received) {
+                            const Container& container, Workers& workers) {
   BlockMoves::require_radius(spots.radius, diameter());
   weigh(moves_.find(moves, spots, workers, work_), moves);
   moves_.weigh(moves, spots);
   for (std::size_t first = 0;;) {
     const std::size_t end = moves_.end_before_rebuild(moves, first, *communicator_, workers);
-    moves_.apply(first, end, workers, received);
+    moves_.apply(first, end, workers, received_.counts() ? received_.counters() : nullptr);
     between_moves_ = moves_.must_rebuild();
     if (!between_moves_) moves_.write_back(workers);
     // Sweeps are the next to ask where others' grains are.
@@ -296,7 +298,7 @@ void TiledPacking::find_larger_overlap(std::uint32_t slot, double& least, Overla
 }
 
 std::size_t TiledPacking::memory() const {
-  return cells_.memory() + walls_.memory() + lists_.memory() + moves_.memory() +
+  return cells_.memory() + received_.memory() + walls_.memory() + lists_.memory() + moves_.memory() +
          bytes_in(work_, unsupported_, drifted_, far_, found_);
 }
 

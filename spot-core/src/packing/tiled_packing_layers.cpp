@@ -166,6 +166,7 @@ Overlap TiledPacking::change(const std::vector<std::int64_t>& gone, const std::v
                              const Container& container) {
   GrainChange change(*this);
   change.require_within_extent(come);
+  received_.hand_over();
   const bool some_go = change.mark_going(gone);
   std::vector<Grain> incoming = some_go ? change.stay_under_other_ids(come) : come;
   cover(incoming, container);

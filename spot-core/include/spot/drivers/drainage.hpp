@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -82,10 +81,10 @@ class Drainage {
   /// Grains that left since the last call, where they were then, in increasing order of ids.
   std::vector<Grain> take_drained();
   /// Counts from now on how many moves move each grain, which is not free.
-  void count_moves_received() { received_.emplace(); }
+  virtual void count_moves_received() = 0;
   /// What was counted since the last call, on this rank. A grain that came from another rank has been counted there,
   /// too; grains that have drained meanwhile are among them.
-  MovesReceived take_moves_received();
+  virtual MovesReceived take_moves_received() = 0;
 
  protected:
   /// Throws InvalidParameter or InvalidContainer if spots, limits and container do not fit together.
@@ -108,7 +107,6 @@ class Drainage {
   Spots::VisitGrains visit_positions() const {
     return [this](const auto& visit) { visit_grains([&visit](const Grain& grain) { visit(grain.position); }); };
   }
-  MovesReceived* received() { return received_ ? &*received_ : nullptr; }
 
   /// `enclosed`: grain volume (1024 = grain_volume).
   void count_move(std::int64_t enclosed) {
@@ -144,7 +142,6 @@ class Drainage {
   GrainChecks checks_;
   Counters counters_;
   std::vector<Grain> drained_;
-  std::optional<MovesReceived> received_;  // if they are counted
 };
 
 }  // namespace spot

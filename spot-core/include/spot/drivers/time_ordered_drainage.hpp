@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "spot/base/memory.hpp"
@@ -32,6 +34,8 @@ class TimeOrderedDrainage : public Drainage {
   const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override { return spots_.live(); }
   Overlap largest_overlap() override;
+  void count_moves_received() override { received_.emplace(); }
+  MovesReceived take_moves_received() override { return received_ ? std::exchange(*received_, {}) : MovesReceived(); }
   std::size_t memory() const override {
     return packing_.memory() + relaxation_.memory() + spots_.memory() + bytes_in(near_);
   }
@@ -61,8 +65,9 @@ class TimeOrderedDrainage : public Drainage {
   Packing packing_;
   Spots spots_;
   Relaxation relaxation_;
-  std::int64_t relaxed_everywhere_ = 0;  // times
-  std::vector<std::uint32_t> near_;      // grains around a move; kept to save allocations
+  std::int64_t relaxed_everywhere_ = 0;    // times
+  std::vector<std::uint32_t> near_;        // grains around a move; kept to save allocations
+  std::optional<MovesReceived> received_;  // if they are counted
 };
 
 }  // namespace spot

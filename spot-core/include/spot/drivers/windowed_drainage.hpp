@@ -56,6 +56,8 @@ class WindowedDrainage : public Drainage {
   const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override { return spots_.live(); }
   Overlap largest_overlap() override { return packing_.largest_overlap(); }
+  void count_moves_received() override { packing_.received().start(); }
+  MovesReceived take_moves_received() override { return packing_.received().take(); }
   std::size_t memory() const override;
   Counters total() override;
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "spot/packing/cells.hpp"
-#include "spot/packing/displacement.hpp"
 #include "spot/parallel/communicator.hpp"
 #include "spot/parallel/workers.hpp"
 #include "spot/walk/move.hpp"
@@ -52,8 +51,9 @@ class BlockMoves {
   bool must_rebuild() const { return must_rebuild_; }
 
   /// Displaces the grains by some of the moves, and counts each as one more of its cells' unrelaxed moves. Only
-  /// Cells::coordinates say where grains are then, until they are written back.
-  void apply(std::size_t first, std::size_t end, Workers& workers, MovesReceived* received);
+  /// Cells::coordinates say where grains are then, until they are written back. `received`, if there is one: counts
+  /// the moves of the grain in each slot.
+  void apply(std::size_t first, std::size_t end, Workers& workers, std::uint32_t* received);
 
   /// Writes back to Cells::points where the grains of a cell are now, or all that moves may have reached.
   void write_back(std::uint32_t cell);
@@ -95,9 +95,8 @@ class BlockMoves {
   void count_enclosed(Part& part);
   void update_tilts(const Part& part, const NonaffineMotion& motion);
   void add_drift(Part& part, std::size_t first, std::int32_t limit);
-  void apply(Part& part, std::size_t first, std::size_t end, bool count);
+  void apply(Part& part, std::size_t first, std::size_t end, std::uint32_t* received);
   void displace(const kernels::Places& places, const Point& middle, std::size_t move) const;
-  void hand_over_received(const Part& part, MovesReceived& received);
 
   Cells& cells_;
   const kernels::Kernels& kernels_;
@@ -106,8 +105,7 @@ class BlockMoves {
   std::vector<std::int32_t> lengths_;  // of the displacements, at most, in quanta
   float tilt_unit_ = 0.0f;             // NonaffineMotion::unit()
   Reach reach_{};
-  std::vector<int> enclosed_;            // volume of own grains, by each move
-  std::vector<std::uint32_t> received_;  // moves of the grain in each slot, if counted, until they are handed over
+  std::vector<int> enclosed_;  // volume of own grains, by each move
   bool must_rebuild_ = false;
 };
 

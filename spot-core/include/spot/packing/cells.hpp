@@ -20,12 +20,17 @@ struct Place {
   std::uint32_t cell, in_cell;
 };
 
-/// What else is kept for every slot, and has to follow when slots are numbered anew.
+/// What else is kept for every slot, and has to follow when slots are numbered anew, and perhaps when grains go to
+/// others.
 class SlotData {
  public:
   virtual ~SlotData() = default;
   /// Slot `s` is slot `now[s]` from now on, of so many.
   virtual void renumber(const std::vector<std::uint32_t>& now, std::size_t slots) = 0;
+  /// The grain in slot `from` is in this one now, too.
+  virtual void follow(std::uint32_t /*slot*/, std::uint32_t /*from*/) {}
+  /// This slot's grain is about to leave it.
+  virtual void vacate(std::uint32_t /*slot*/) {}
 };
 
 /// Grains in the cells of a lattice, with room in each cell for as many as it needs.

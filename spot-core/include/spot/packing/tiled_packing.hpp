@@ -15,6 +15,7 @@
 #include "spot/packing/ghost_layers.hpp"
 #include "spot/packing/grain.hpp"
 #include "spot/packing/neighbour_lists.hpp"
+#include "spot/packing/received_moves.hpp"
 #include "spot/packing/wall_marks.hpp"
 #include "spot/parallel/communicator.hpp"
 #include "spot/parallel/workers.hpp"
@@ -71,10 +72,9 @@ class TiledPacking {
   /// Collective. Applies the moves, one after the other to every grain, as displace() does. They are weighed before the
   /// first one is applied. Each counts as an unrelaxed move of all cells that it may have reached.
   /// `moves`: those that may reach grains of this rank, in the order of (spot, number) if there are several ranks.
-  /// `received`, if there is one: counts the moves of each grain. Throws InvalidParameter unless the radius is below 8
-  /// diameters.
+  /// Throws InvalidParameter unless the radius is below 8 diameters.
   void displace(std::vector<Move>& moves, const SpotParameters& spots, const Weigh& weigh, const Container& container,
-                Workers& workers, MovesReceived* received = nullptr);
+                Workers& workers);
 
   /// Marks the grains near walls anew, as after the walls changed.
   void mark_near_walls(const Container& container) { walls_.mark_all(container); }
@@ -101,6 +101,7 @@ class TiledPacking {
   // For relaxation.
   Cells& cells() { return cells_; }
   const Cells& cells() const { return cells_; }
+  ReceivedMoves& received() { return received_; }
   const NeighbourLists& lists() const { return lists_; }
   NeighbourLists& lists() { return lists_; }
   const WallMarks& walls() const { return walls_; }
@@ -135,6 +136,7 @@ class TiledPacking {
   const kernels::Kernels& kernels_;
   std::shared_ptr<Communicator> communicator_;
   Cells cells_;
+  ReceivedMoves received_;
   WallMarks walls_;
   NeighbourLists lists_;
   GhostLayers ghosts_;
