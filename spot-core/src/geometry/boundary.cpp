@@ -14,7 +14,8 @@ namespace spot {
 
 namespace {
 
-constexpr std::size_t most_surfaces = 64;
+/// Surfaces that cross a small region, of which all combinations of sides are tried.
+constexpr int most_tried = 4;
 
 /// The largest difference between the numbers of two surfaces (length).
 double difference(const Surface& a, const Surface& b, double size) {
@@ -29,6 +30,10 @@ double difference(const Surface& a, const Surface& b, double size) {
 constexpr int directions_around = 8;
 
 }  // namespace
+
+void Boundary::Sides::add(std::size_t surface, bool is_inner) {
+  (is_inner ? inner : outer) |= std::uint64_t{1} << surface;
+}
 
 void Boundary::Sides::set(std::size_t surface, bool is_inner) {
   const std::uint64_t bit = std::uint64_t{1} << surface;
@@ -47,10 +52,20 @@ Boundary::~Boundary() = default;
 Boundary::Boundary(Boundary&&) noexcept = default;
 
 Boundary::Node Boundary::node_of(const Solid& solid) {
-  Node node{solid.kind(), 0, solid.inner(), {}};
-  if (solid.kind() == Solid::Kind::side) node.surface = number_of(solid.surface());
-  for (const Solid& part : solid.parts()) node.parts.push_back(node_of(part));
+  Node node{solid.kind() == Solid::Kind::union_of, {}, {}};
+  add_part(node, solid);
   return node;
+}
+
+/// Sides that are parts of one node are kept as bits, and so are those of a part that is united or intersected as the
+/// node itself is.
+void Boundary::add_part(Node& node, const Solid& part) {
+  if (part.kind() == Solid::Kind::side)
+    node.sides.add(number_of(part.surface()), part.inner());
+  else if ((part.kind() == Solid::Kind::union_of) == node.unites)
+    for (const Solid& inner : part.parts()) add_part(node, inner);
+  else
+    node.parts.push_back(node_of(part));
 }
 
 std::size_t Boundary::number_of(const std::shared_ptr<const Surface>& surface) {
@@ -86,21 +101,33 @@ void Boundary::find_corners() {
     }
 }
 
-Boundary::Sides Boundary::sides_of(const Vector3& place) const {
+Boundary::Depths Boundary::depths_at(const Vector3& place) const {
+  Depths depths;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) depths[k] = surfaces_[k]->depth(place);
+  return depths;
+}
+
+Boundary::Sides Boundary::sides_of(const Depths& depths) const {
   Sides sides;
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    const double depth = surfaces_[k]->depth(place);
-    if (depth >= 0.0) sides.inner |= std::uint64_t{1} << k;
-    if (depth <= 0.0) sides.outer |= std::uint64_t{1} << k;
+    if (depths[k] >= 0.0) sides.inner |= std::uint64_t{1} << k;
+    if (depths[k] <= 0.0) sides.outer |= std::uint64_t{1} << k;
   }
   return sides;
 }
 
+Boundary::Sides Boundary::sides_of(const Vector3& place) const { return sides_of(depths_at(place)); }
+
 bool Boundary::matches(const Node& node, const Sides& sides) {
-  if (node.kind == Solid::Kind::side) return ((node.inner ? sides.inner : sides.outer) >> node.surface & 1u) != 0;
-  const auto match = [&](const Node& part) { return matches(part, sides); };
-  return node.kind == Solid::Kind::union_of ? std::any_of(node.parts.begin(), node.parts.end(), match)
-                                            : std::all_of(node.parts.begin(), node.parts.end(), match);
+  const std::uint64_t inner = sides.inner & node.sides.inner, outer = sides.outer & node.sides.outer;
+  if (node.unites) {
+    if ((inner | outer) != 0) return true;
+  } else if (inner != node.sides.inner || outer != node.sides.outer) {
+    return false;
+  }
+  for (const Node& part : node.parts)
+    if (matches(part, sides) == node.unites) return node.unites;
+  return !node.unites;
 }
 
 bool Boundary::contains(const Vector3& place) const { return place.allFinite() && matches(whole_, sides_of(place)); }
@@ -119,22 +146,35 @@ bool Boundary::lies_on(const Vector3& point, std::size_t first, std::size_t seco
          std::abs(surfaces_[second]->depth(point)) < tolerance_;
 }
 
-/// Is all inside that is no farther than this? Not found where a surface comes as close, be it a wall there or not.
-bool Boundary::is_inside_to(const Vector3& place, double distance) const {
-  Sides sides;
+/// Is all inside that is no farther than this from a place with these depths? True only where no surface that comes as
+/// close is a wall, on whichever sides of the others; most of them are none there, as a pipe below an outlet is none
+/// above it.
+bool Boundary::is_inside_to(double distance, const Depths& depths) const {
+  std::uint64_t near = 0;
+  int count = 0;
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    const double depth = surfaces_[k]->depth(place);
-    if (std::abs(depth) <= distance + tolerance_) return false;
-    sides.set(k, depth > 0.0);
+    if (std::abs(depths[k]) > distance + tolerance_) continue;
+    near |= std::uint64_t{1} << k;
+    if (++count > most_tried) return false;
   }
-  return matches(whole_, sides);
+  Sides sides = sides_of(depths);
+  // Whatever is inside though it is on neither side of these, is on both.
+  sides.inner &= ~near;
+  sides.outer &= ~near;
+  if (matches(whole_, sides)) return true;
+  for (std::uint64_t inner = near;; inner = (inner - 1) & near) {
+    sides.inner = (sides.inner & ~near) | inner;
+    sides.outer = (sides.outer & ~near) | (near & ~inner);
+    if (!matches(whole_, sides)) return false;
+    if (inner == 0) return true;
+  }
 }
 
 std::optional<WallOnPath> Boundary::first_wall(const Vector3& from, const Vector3& to) const {
   const Vector3 along = to - from;
   const double length = along.norm();
   if (!(length > 0.0)) return std::nullopt;
-  if (is_inside_to(from, length)) return std::nullopt;
+  if (is_inside_to(length, depths_at(from))) return std::nullopt;
   const double gap = 1e-3 * tolerance_ / length;  // between crossings that are one
   std::array<double, 2 * most_surfaces + 1> shares;
   std::size_t n = 0;
@@ -172,7 +212,7 @@ Vector3 Boundary::normal_of_wall(const Vector3& point, const Vector3& along) con
 }
 
 /// All that may be nearest, nearest first.
-std::vector<Boundary::Candidate> Boundary::candidates(const Vector3& place, double reach) const {
+std::vector<Boundary::Candidate> Boundary::candidates(const Vector3& place, double reach, const Depths& depths) const {
   std::vector<Candidate> found;
   std::array<bool, most_surfaces> near{};
   const auto add = [&](const Vector3& point, bool on_face) {
@@ -180,7 +220,7 @@ std::vector<Boundary::Candidate> Boundary::candidates(const Vector3& place, doub
     if (distance < reach) found.push_back({point, distance, on_face});
   };
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    near[k] = std::abs(surfaces_[k]->depth(place)) < reach;
+    near[k] = std::abs(depths[k]) < reach;
     if (near[k]) add(surfaces_[k]->nearest(place), true);
   }
   if (found.empty()) return found;
@@ -197,9 +237,11 @@ std::vector<Boundary::Candidate> Boundary::candidates(const Vector3& place, doub
 
 template <typename Visit>
 void Boundary::visit_contacts(const Vector3& place, double reach, Visit&& visit) const {
-  const std::vector<Candidate> near = candidates(place, reach);
+  const Depths depths = depths_at(place);
+  if (is_inside_to(reach, depths)) return;
+  const std::vector<Candidate> near = candidates(place, reach, depths);
   if (near.empty()) return;
-  const bool inside = contains(place);
+  const bool inside = place.allFinite() && matches(whole_, sides_of(depths));
   std::vector<Candidate> taken;
   for (const Candidate& candidate : near) {
     // One and the same point is found more than once where a face or an edge ends.
@@ -217,10 +259,11 @@ void Boundary::visit_contacts(const Vector3& place, double reach, Visit&& visit)
 
 /// Does the surface of the solid go through here, and is no other point of it around here nearer to the place?
 bool Boundary::is_minimum(const Vector3& place, const Candidate& candidate) const {
+  const Depths depths = depths_at(candidate.point);
   std::vector<std::size_t> through;
   for (std::size_t k = 0; k < surfaces_.size(); ++k)
-    if (std::abs(surfaces_[k]->depth(candidate.point)) < tolerance_) through.push_back(k);
-  if (through.size() == 1 && candidate.on_face) return changes_across(through.front(), sides_of(candidate.point));
+    if (std::abs(depths[k]) < tolerance_) through.push_back(k);
+  if (through.size() == 1 && candidate.on_face) return changes_across(through.front(), sides_of(depths));
   bool on_boundary = false;
   for (const std::size_t surface : through)
     if (falls_along(place, candidate.point, surface, through, on_boundary)) return false;

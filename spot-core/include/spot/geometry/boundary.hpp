@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -44,18 +45,21 @@ class Boundary {
   std::optional<WallOnPath> first_wall(const Vector3& from, const Vector3& to) const;
 
  private:
-  /// As Solid, with the numbers of surfaces.
-  struct Node {
-    Solid::Kind kind;
-    std::size_t surface;
-    bool inner;
-    std::vector<Node> parts;
-  };
   /// On which side of each surface a place is, a bit each; on both where it is on the surface.
   struct Sides {
     std::uint64_t inner = 0, outer = 0;
+    void add(std::size_t surface, bool is_inner);
     void set(std::size_t surface, bool is_inner);
   };
+  /// A union or an intersection of sides of surfaces, and of other nodes.
+  struct Node {
+    bool unites;
+    Sides sides;
+    std::vector<Node> parts;
+  };
+  static constexpr std::size_t most_surfaces = 64;
+  /// Of a place, in each surface.
+  using Depths = std::array<double, most_surfaces>;
   struct Edge {
     std::size_t first, second;
     std::unique_ptr<Curve> curve;
@@ -71,16 +75,19 @@ class Boundary {
   };
 
   Node node_of(const Solid& solid);
+  void add_part(Node& node, const Solid& part);
   std::size_t number_of(const std::shared_ptr<const Surface>& surface);
   void find_edges();
   void find_corners();
 
+  Depths depths_at(const Vector3& place) const;
+  Sides sides_of(const Depths& depths) const;
   Sides sides_of(const Vector3& place) const;
   static bool matches(const Node& node, const Sides& sides);
   bool changes_across(std::size_t surface, Sides sides) const;
-  bool is_inside_to(const Vector3& place, double distance) const;
+  bool is_inside_to(double distance, const Depths& depths) const;
   bool lies_on(const Vector3& point, std::size_t first, std::size_t second) const;
-  std::vector<Candidate> candidates(const Vector3& place, double reach) const;
+  std::vector<Candidate> candidates(const Vector3& place, double reach, const Depths& depths) const;
   template <typename Visit>
   void visit_contacts(const Vector3& place, double reach, Visit&& visit) const;
   bool is_minimum(const Vector3& place, const Candidate& candidate) const;
