@@ -41,15 +41,15 @@ Walks walk(const DryRun& run) {
   const spot::SpotParameters& parameters = run.command.spots;
   spot::Alone alone;
   spot::Workers worker(1);
-  const spot::Spots::VisitGrains visit_grains = [&run](const auto& visit) {
+  const spot::Spots::VisitGrains visit_grains = [&run](const auto& visit, const auto&) {
     for (const spot::Grain& grain : run.grains) visit(grain.position);
   };
   spot::FreeSurface surface(parameters, *run.container, run.largest);
   double top = run.container->outlets().height();
-  visit_grains([&](const Vector3& grain) {
-    surface.add(grain);
-    top = std::max(top, grain.z());
-  });
+  for (const spot::Grain& grain : run.grains) {
+    surface.add(grain.position);
+    top = std::max(top, grain.position.z());
+  }
   surface.gather(alone);
 
   spot::Spots spots(parameters, *run.container, run.largest);

@@ -488,7 +488,7 @@ TEST(SpotsUnit, TheSurfaceIsFoundWheneverASpotHasClimbedAPartOfItsRadius) {
       Spots& spots = k < 77 ? population : again;
       bool asked = false;
       spots.update_surface(
-          k * window, [&](const auto&) { asked = true; }, alone);
+          k * window, [&](const auto&, const auto&) { asked = true; }, alone);
       const double last = std::floor((k - 1) * window / interval + 1e-9),
                    now = std::floor(k * window / interval + 1e-9);
       EXPECT_EQ(asked, now > last) << "window " << k << " of " << window / interval;
@@ -502,7 +502,7 @@ TEST(SpotsUnit, TheSurfaceIsFoundWheneverASpotHasClimbedAPartOfItsRadius) {
   parameters.surface_exponent = 0.0;
   Spots blind(parameters, *space, 1.0);
   blind.update_surface(
-      0.0, [](const auto&) { ADD_FAILURE() << "nobody asks"; }, alone);
+      0.0, [](const auto&, const auto&) { ADD_FAILURE() << "nobody asks"; }, alone);
 }
 
 /// In the order of time, too, where five settings of relative speeds are an interval.
@@ -514,7 +514,7 @@ TEST(SpotsUnit, InTheOrderOfTimeTheSurfaceIsFoundAsOften) {
   const double interval = spot::calibration::climb_between_surfaces * parameters.radius / parameters.speed;
   Spots population(parameters, *space, 1.0);
   int asked = 0;
-  while (population.next_step(20.5 * interval, *space, [&](const auto&) { ++asked; })) {
+  while (population.next_step(20.5 * interval, *space, [&](const auto&, const auto&) { ++asked; })) {
   }
   EXPECT_EQ(asked, 21);
 }

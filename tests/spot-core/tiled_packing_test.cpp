@@ -15,6 +15,7 @@
 #include "plain_packing.hpp"
 #include "scenes.hpp"
 #include "spot/geometry/plane_wall.hpp"
+#include "spot/walk/free_surface.hpp"
 
 namespace {
 
@@ -294,6 +295,23 @@ Treatment repeating(const char* name, bool x, bool y, bool equal) {
 class TiledPackingBruteForce : public testing::TestWithParam<Treatment> {};
 
 /// Moves and sweeps over everything, many more than a list survives.
+/// Covered cells left out, the free surface is that of all grains. Returns how many were visited.
+std::size_t expect_same_surface(const TiledPacking& packing, const spot::Container& container, double diameter) {
+  spot::FreeSurface of_all({2.6 * diameter}, container, diameter), surface = of_all;
+  packing.visit_grains([&](const Grain& grain) { of_all.add(grain.position); });
+  std::size_t visited = 0;
+  const auto add = [&](const Vector3& position) {
+    surface.add(position);
+    ++visited;
+  };
+  packing.visit_uncovered(add, [&](const Vector3& low, const Vector3& high) { return surface.covers(low, high); });
+  spot::Bytes expected, found;
+  of_all.save(expected);
+  surface.save(found);
+  EXPECT_EQ(found, expected);
+  return visited;
+}
+
 TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
   const Treatment& t = GetParam();
   const auto container = t.container();
@@ -329,6 +347,7 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
     }
     if (call % 4 == 3 || call + 1 == t.calls) {
       scenes::expect_identical(sorted_grains(tiled), plain.grains());
+      expect_same_surface(tiled, *container, t.diameter);
       if (HasFailure()) FAIL() << "call " << call;
     }
   }
@@ -353,6 +372,16 @@ TEST(TiledPackingBruteForce, LargestOverlapIsThatOfAllPairs) {
   const auto grains = scenes::random_grains(300, {0, 0, 0}, {7, 7, 7}, 0.8, 5);
   const TiledPacking packing(1.0, 100.0, 0.0, grains, *space);
   EXPECT_NEAR(packing.largest_overlap().depth, deepest_of(sorted_grains(packing)), 1e-15);
+}
+
+TEST(TiledPackingUnit, TheSurfaceIsFoundWithoutWhatIsDeepBelowIt) {
+  const auto silo = scenes::small_silo(18.0, 15.0);
+  auto grains = scenes::dense_grains({-17.5, -14.5, 0.5}, {17.5, 14.5, 20.0}, 0.01, 7);
+  grains.erase(std::remove_if(grains.begin(), grains.end(),
+                              [](const Grain& grain) { return grain.position.z() > 14.0 + 0.2 * grain.position.x(); }),
+               grains.end());
+  const TiledPacking packing(1.0, 100.0, -1.0, grains, *silo);
+  EXPECT_LT(expect_same_surface(packing, *silo, 1.0), grains.size() / 2);
 }
 
 /// In a sweep over some cells, grains are pushed off those that stay with full strength.

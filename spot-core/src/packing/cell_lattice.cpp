@@ -98,6 +98,18 @@ Cell CellLattice::cell(std::uint32_t number) const {
   return {in_layer % held(0) - images_[0], in_layer / held(0) - images_[1], i / layer + first_layer_};
 }
 
+std::pair<Vector3, Vector3> CellLattice::corners(const Cell& cell) const {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const std::array<int, 3> at = {cell.x, cell.y, cell.z};
+  Vector3 low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<Eigen::Index>(axis);
+    low[k] = at[axis] == 0 ? -infinite : low_[k] + at[axis] * edge_[axis];
+    high[k] = at[axis] == n_[axis] - 1 ? infinite : low_[k] + (at[axis] + 1) * edge_[axis];
+  }
+  return {low, high};
+}
+
 std::array<std::int64_t, 3> CellLattice::quanta(const Vector3& from_low) const {
   const double per_quantum = 1.0 / quantum_.length();  // a power of two
   return {std::llrint(from_low.x() * per_quantum), std::llrint(from_low.y() * per_quantum),

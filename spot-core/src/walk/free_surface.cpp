@@ -50,6 +50,15 @@ void FreeSurface::add(const Vector3& grain) {
   height = std::max(height, grain.z());
 }
 
+bool FreeSurface::covers(const Vector3& low, const Vector3& high) const {
+  if (container_->periodic().any() || !low.allFinite() || !high.allFinite()) return false;
+  const NodeLattice::Node first = column(low), last = column(high);
+  for (NodeLattice::Node node = first; node[1] <= last[1]; ++node[1])
+    for (node[0] = first[0]; node[0] <= last[0]; ++node[0])
+      if (!box_.contains(node) || heights_[box_.place(node)] < high.z()) return false;
+  return true;
+}
+
 void FreeSurface::cover(const NodeLattice::Box& box) {
   const NodeLattice::Box grown = box_.united(box);
   heights_ = box_.values_in(grown, heights_, none);

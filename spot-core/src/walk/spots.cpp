@@ -191,7 +191,8 @@ void Spots::update_flow(double elapsed, Communicator& communicator) {
 void Spots::update_surface(double now, const VisitGrains& visit_grains, Communicator& communicator) {
   if (!surface_.needed() || !surfaces_.due(now)) return;
   surface_.clear();
-  visit_grains([this](const Vector3& position) { surface_.add(position); });
+  visit_grains([this](const Vector3& position) { surface_.add(position); },
+               [this](const Vector3& low, const Vector3& high) { return surface_.covers(low, high); });
   surface_.gather(communicator);
 }
 

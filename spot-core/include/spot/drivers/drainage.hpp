@@ -105,7 +105,9 @@ class Drainage {
   double diameter() const { return diameter_; }
   /// What spots call to see where grains are.
   Spots::VisitGrains visit_positions() const {
-    return [this](const auto& visit) { visit_grains([&visit](const Grain& grain) { visit(grain.position); }); };
+    return [this](const auto& visit, const auto&) {
+      visit_grains([&visit](const Grain& grain) { visit(grain.position); });
+    };
   }
 
   /// `enclosed`: grain volume (1024 = grain_volume).

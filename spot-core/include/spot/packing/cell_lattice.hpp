@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "spot/base/quantum.hpp"
@@ -94,6 +95,8 @@ class CellLattice {
     return {static_cast<int>(number % n_[0]), static_cast<int>(number / n_[0] % n_[1]),
             static_cast<int>(number / n_[0] / n_[1])};
   }
+  /// Between which the grains of a cell were listed: infinitely far where it holds what lies beyond the lattice.
+  std::pair<Vector3, Vector3> corners(const Cell& cell) const;
   bool is_image(const Cell& cell) const { return cell.x < 0 || cell.x >= n_[0] || cell.y < 0 || cell.y >= n_[1]; }
   /// The cell that an image is one of.
   Cell source_of(const Cell& image) const { return {(image.x + n_[0]) % n_[0], (image.y + n_[1]) % n_[1], image.z}; }

@@ -37,6 +37,8 @@ class FreeSurface {
   /// Forgets all grains.
   void clear();
   void add(const Vector3& grain);
+  /// Are all grains between two corners no higher than others over the same columns? False where nobody knows.
+  bool covers(const Vector3& low, const Vector3& high) const;
   /// Collective. After all ranks have added their grains.
   void gather(Communicator& communicator);
 
