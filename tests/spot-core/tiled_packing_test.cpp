@@ -304,7 +304,8 @@ std::size_t expect_same_surface(const TiledPacking& packing, const spot::Contain
     surface.add(position);
     ++visited;
   };
-  packing.visit_uncovered(add, [&](const Vector3& low, const Vector3& high) { return surface.covers(low, high); });
+  packing.cells().visit_uncovered(add,
+                                  [&](const Vector3& low, const Vector3& high) { return surface.covers(low, high); });
   spot::Bytes expected, found;
   of_all.save(expected);
   surface.save(found);

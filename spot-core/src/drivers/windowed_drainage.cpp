@@ -112,7 +112,7 @@ void WindowedDrainage::advance_to(double time) {
     spots_.follow_outflow(now, *communicator_);
     spots_.give_birth(until, container(), [this](const Spot& spot) { return here(spot); });
     spots_.update_surface(
-        now, [this](const auto& visit, const auto& is_covered) { packing_.visit_uncovered(visit, is_covered); },
+        now, [this](const auto& visit, const auto& is_covered) { packing_.cells().visit_uncovered(visit, is_covered); },
         *communicator_);
     step_to(until);
     displace();

@@ -188,6 +188,18 @@ Grain Cells::grain(std::uint32_t slot, const Cell& listed_in) const {
           radius(slot)};
 }
 
+void Cells::visit_uncovered(const std::function<void(const Vector3&)>& visit,
+                            const std::function<bool(const Vector3& low, const Vector3& high)>& is_covered) const {
+  for (std::uint32_t end = last_own(); end > first_own(); end -= in_layer())
+    for (std::uint32_t cell = end - in_layer(); cell < end; ++cell) {
+      if (is_image(cell)) continue;
+      const auto [low, high] = lattice().corners(lattice().cell(cell));
+      const double most = drift[cell] * lattice().quantum().length();
+      if (is_covered(low.array() - most, high.array() + most)) continue;
+      this->visit(cell, cell + 1, [&](std::uint32_t slot) { visit(position(slot)); });
+    }
+}
+
 std::vector<std::int64_t> Cells::grains_in_own_layers() const {
   std::vector<std::int64_t> grains(static_cast<std::size_t>(own_layers()), 0);
   visit_own([&](std::uint32_t slot) { ++grains[layer_of(cell_of(slot))]; });

@@ -241,20 +241,6 @@ void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit, 
   workers ? workers->share_out(owned, visit_cells) : visit_cells(0, 0, owned);
 }
 
-void TiledPacking::visit_uncovered(
-    const std::function<void(const Vector3&)>& visit,
-    const std::function<bool(const Vector3& low, const Vector3& high)>& is_covered) const {
-  const CellLattice& lattice = cells_.lattice();
-  for (std::uint32_t end = cells_.last_own(); end > cells_.first_own(); end -= cells_.in_layer())
-    for (std::uint32_t cell = end - cells_.in_layer(); cell < end; ++cell) {
-      if (cells_.is_image(cell)) continue;
-      const auto [low, high] = lattice.corners(lattice.cell(cell));
-      const double drift = cells_.drift[cell] * quantum().length();
-      if (is_covered(low.array() - drift, high.array() + drift)) continue;
-      cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.position(slot)); });
-    }
-}
-
 void TiledPacking::take_out_below(double outlet, const std::function<bool(const Vector3& place)>& is_closed,
                                   std::vector<Grain>& drained) {
   const CellLattice& lattice = cells_.lattice();

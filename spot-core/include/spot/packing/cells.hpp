@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -12,25 +13,13 @@
 #include "spot/packing/grain.hpp"
 #include "spot/packing/held_cells.hpp"
 #include "spot/packing/point.hpp"
+#include "spot/packing/slot_data.hpp"
 
 namespace spot {
 
 /// A place for a grain in a cell held; slots change when cells get more room, places don't.
 struct Place {
   std::uint32_t cell, in_cell;
-};
-
-/// What else is kept for every slot, and has to follow when slots are numbered anew, and perhaps when grains go to
-/// others.
-class SlotData {
- public:
-  virtual ~SlotData() = default;
-  /// Slot `s` is slot `now[s]` from now on, of so many.
-  virtual void renumber(const std::vector<std::uint32_t>& now, std::size_t slots) = 0;
-  /// The grain in slot `from` is in this one now, too.
-  virtual void follow(std::uint32_t /*slot*/, std::uint32_t /*from*/) {}
-  /// This slot's grain is about to leave it.
-  virtual void vacate(std::uint32_t /*slot*/) {}
 };
 
 /// Grains in the cells of a lattice, with room in each cell for as many as it needs.
@@ -96,6 +85,11 @@ class Cells : public HeldCells {
       if (is_image(cell_of(slot))) visit(slot);
     });
   }
+
+  /// Calls visit(position) for own grains, layer by layer from the top, but for those of cells that are covered, when
+  /// it is told between which corners their grains are.
+  void visit_uncovered(const std::function<void(const Vector3&)>& visit,
+                       const std::function<bool(const Vector3& low, const Vector3& high)>& is_covered) const;
 
   /// An empty place in a cell; if there is none, slots are numbered anew. Throws InvalidPacking if there are too many.
   Place ensure_room(std::uint32_t cell);

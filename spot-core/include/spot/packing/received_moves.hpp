@@ -6,6 +6,7 @@
 
 #include "spot/packing/cells.hpp"
 #include "spot/packing/displacement.hpp"
+#include "spot/packing/slot_data.hpp"
 
 namespace spot {
 

@@ -52,7 +52,6 @@ class TiledPacking {
 
   /// The rank that owns the layer at this height.
   int owner(double height) const { return cells_.slabs().owner(cells_.lattice().layer(height)); }
-
   /// The ranks, from first to last, that hold grains a move with its middle at this height may reach.
   std::pair<int, int> reached(double height, double radius) const;
 
@@ -65,11 +64,6 @@ class TiledPacking {
 
   /// Calls visit(grain) for all grains of this rank, in no particular order; from all threads at once, if there are.
   void visit_grains(const std::function<void(const Grain&)>& visit, Workers* workers = nullptr) const;
-
-  /// Calls visit(position) for this rank's grains, layer by layer from the top, but for those of cells that are
-  /// covered, when it is told between which corners their grains are.
-  void visit_uncovered(const std::function<void(const Vector3&)>& visit,
-                       const std::function<bool(const Vector3& low, const Vector3& high)>& is_covered) const;
 
   /// Gives moves their weights, when it is told the volume of this rank's grains that each of them encloses.
   using Weigh = std::function<void(const std::vector<int>& enclosed, std::vector<Move>& moves)>;
@@ -99,7 +93,6 @@ class TiledPacking {
 
   /// Of a grain of this rank and any other.
   Overlap largest_overlap() const;
-
   /// Bytes on this rank.
   std::size_t memory() const;
 

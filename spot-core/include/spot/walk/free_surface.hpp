@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "spot/base/bytes.hpp"
@@ -33,6 +34,11 @@ class FreeSurface {
   bool needed() const { return needed_; }
   /// Has any grain been found yet?
   bool known() const { return !heights_.empty(); }
+
+  /// Calls visit(position) for every grain of this rank; those between two corners may be left out if they are covered,
+  /// that is, no higher than others over them that were visited already.
+  using VisitGrains = std::function<void(const std::function<void(const Vector3&)>& visit,
+                                         const std::function<bool(const Vector3& low, const Vector3& high)>& covered)>;
 
   /// Forgets all grains.
   void clear();

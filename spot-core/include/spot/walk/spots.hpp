@@ -31,11 +31,7 @@ class Spots {
   /// Throws InvalidParameter, or InvalidContainer if the spots cannot enter.
   Spots(const SpotParameters& parameters, const Container& container, double diameter);
 
-  /// Are all grains between two corners no higher than others over them, that were visited already?
-  using IsCovered = std::function<bool(const Vector3& low, const Vector3& high)>;
-  /// Calls `visit` for the position of every grain of this rank, but for any that are covered.
-  using VisitGrains =
-      std::function<void(const std::function<void(const Vector3&)>& visit, const IsCovered& is_covered)>;
+  using VisitGrains = FreeSurface::VisitGrains;
 
   /// In the order of (time, spot): the next step of any spot up to and including `time`, or none, carried out.
   /// Relative speeds are set, and the flow is found anew, whenever a spot has climbed R_s / 10 at v_s, the surface as
