@@ -3,12 +3,12 @@
 # Makes the pictures of the documents, where these have them. Runs the decks that are drawn, and ./run.sh where its
 # dumps are not there yet.
 #
-#   scripts/pictures.sh                  all; ten minutes of one core, after ./run.sh
+#   scripts/pictures.sh                  all; a quarter of an hour of one core, after ./run.sh
 #   scripts/pictures.sh hoppers python   those of these examples
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 
-all=(silo own-hopper hoppers half-full benchmark-silo bidisperse periodic-slot two-outlets pebble-bed python)
+all=(silo own-hopper hoppers half-full benchmark-silo bidisperse periodic-slot two-outlets pebble-bed reactor python)
 case "${1:-}" in
   -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
 esac
@@ -99,6 +99,16 @@ pictures_of_pebble-bed() {
   analysis turnovers $here/dem-60.json $runs/{1,2,3} --plot $here/residence.png
   render spot=$runs/1 --layer 5 --slice -1 1 --times 0 92 184 368 --height 330 -o $here/bed.png
   render DEM=$here/dem.npz --height 330 -o $here/bed-dem.png
+}
+
+pictures_of_reactor() {
+  local here=examples/pebble-bed packing=$PWD/results/pictures/whole-60.data.gz
+  mkdir -p results/pictures
+  "$python" -B $here/make_packing.py 60 "$packing"
+  drain pebble-bed whole -var vessel 29 -var packing "$packing" -var every 40 -var turnovers 0.03
+  render spot=results/pictures/pebble-bed/whole --slice -1 1 --times 0 100 200 --height 700 -o $here/reactor.png
+  "$python" -c "from PIL import Image
+Image.open('$here/reactor.png').convert('RGB').quantize(32).save('$here/reactor.png', optimize=True)"
 }
 
 pictures_of_python() {
