@@ -294,7 +294,6 @@ Treatment repeating(const char* name, bool x, bool y, bool equal) {
 
 class TiledPackingBruteForce : public testing::TestWithParam<Treatment> {};
 
-/// Moves and sweeps over everything, many more than a list survives.
 /// Covered cells left out, the free surface is that of all grains. Returns how many were visited.
 std::size_t expect_same_surface(const TiledPacking& packing, const spot::Container& container, double diameter) {
   spot::FreeSurface of_all({2.6 * diameter}, container, diameter), surface = of_all;
@@ -313,6 +312,7 @@ std::size_t expect_same_surface(const TiledPacking& packing, const spot::Contain
   return visited;
 }
 
+/// Moves and sweeps over everything, many more than a list survives.
 TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
   const Treatment& t = GetParam();
   const auto container = t.container();
