@@ -756,10 +756,12 @@ void FixSpot::count_crossings(int i, int axis, double beyond) {
 }
 
 /// Positions go back to LAMMPS, and so does who has left; after a step the velocity is the displacement over it divided
-/// by the timestep.
+/// by the timestep. Then most grains may be at rest: LAMMPS has them where they are.
 void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_step) {
   model->local.assign(atom->tag, atom->nlocal);
   const double per_time = 1.0 / update->dt;
+  const spot::Which which = after_step ? spot::Which::moved : spot::Which::all;
+  if (after_step && atom->nlocal > 0) std::fill_n(atom->v[0], 3 * static_cast<std::size_t>(atom->nlocal), 0.0);
   const spot::Quantum &quantum = model->drainage->quantum();
   const auto put = [&](std::int64_t grain, const double *position) {
     const int i = model->local[static_cast<tagint>(grain)];
@@ -784,7 +786,9 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
     }
   };
   if (comm->nprocs == 1) {
-    model->drainage->visit_grains_at_once([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); });
+    model->drainage->visit_grains_at_once([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); },
+                                          which);
+    model->drainage->forget_moved();
     for (const spot::Grain &grain : drained) model->leaving.push_back(static_cast<tagint>(grain.id));
     return;
   }
@@ -793,7 +797,8 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
     const spot::Vector3 &at = grain.position;
     deliveries.push_back({grain.id, {at.x(), at.y(), at.z()}, left});
   };
-  model->drainage->visit_grains([&](const spot::Grain &grain) { add(grain, false); });
+  model->drainage->visit_grains([&](const spot::Grain &grain) { add(grain, false); }, which);
+  model->drainage->forget_moved();
   for (const spot::Grain &grain : drained) add(grain, true);
   for (const Delivery &delivery : deliver(deliveries, {atom->tag, atom->tag + atom->nlocal}, *model->ranks)) {
     if (delivery.left)
@@ -815,7 +820,7 @@ void FixSpot::initial_integrate(int) {
     // The clock is a multiple of the window: how many of them make a step changes nothing.
     model->windows += model->windows_per_step;
     drainage.advance_to(static_cast<double>(model->windows) * model->window);
-    drainage.require_inside();
+    drainage.require_inside(spot::Which::moved);
     const std::vector<spot::Grain> drained = drainage.take_drained();
     count_at_outlets(drained);
     if (model->recirculation) {

@@ -106,8 +106,10 @@ TEST(GeneralScenesInvariance, TheWindowedDriverHoldsThemToo) {
     try {
       const auto drainage = scene.start_windowed(1 + static_cast<int>(seed % 3));
       invariants::Ledger ledger(scene.grains(), scene.diameter(), scene.limits(), *scene.silo());
+      invariants::Followed followed;
       for (int k = 1; k <= 6; ++k) {
         drainage->advance_to(0.15 * k);
+        ASSERT_EQ(followed.check(*drainage), -1);
         ASSERT_EQ(ledger.check(*drainage), "");
         ASSERT_LT(ledger.overlaps().largest, scene.limits().largest_overlap_in_flow);
         for (const Grain& grain : drainage->grains())
@@ -172,6 +174,7 @@ TEST(GeneralScenesInvariance, MovingEverythingAlongAPeriodMovesTheResult) {
 All recirculate(const scenes::GeneralScene& scene, bool on_surface, int ranks, std::int64_t& put_back) {
   All all;
   std::mutex mutex;
+  invariants::Followed followed;
   put_back = 0;
   scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
     const auto drainage = scene.start_windowed(1, communicator);
@@ -179,6 +182,7 @@ All recirculate(const scenes::GeneralScene& scene, bool on_surface, int ranks, s
     spot::Inlet inlet{scene.low(), scene.high() + Vector3(0.0, 0.0, 40.0 * d), on_surface, {}, "the top"};
     if (!on_surface) inlet.low.z() = scene.high().z() + 8.0 * d;
     const spot::Recirculation recirculation(scene.spots().seed, inlet, scene.silo(), d);
+    EXPECT_EQ(followed.check(*drainage), -1);
     std::int64_t own = 0;
     for (int k = 1; k <= 6; ++k) {
       drainage->advance_to(0.15 * k);
@@ -186,6 +190,7 @@ All recirculate(const scenes::GeneralScene& scene, bool on_surface, int ranks, s
       if (k < 3) continue;
       recirculation.put_back(*drainage, drained, k, *communicator);
       own += static_cast<std::int64_t>(drained.size());
+      EXPECT_EQ(followed.check(*drainage), -1);
     }
     drainage->require_inside();
     const std::lock_guard<std::mutex> lock(mutex);

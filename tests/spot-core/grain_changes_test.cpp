@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include "invariants.hpp"
 #include "ranks_of_threads.hpp"
 #include "scenes.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
@@ -95,6 +96,7 @@ GrainChanges part_of(const Event& event, int rank, int ranks) {
 Places drain(int ranks, double restart) {
   Places outcome;
   std::mutex mutex;
+  invariants::Followed followed;
   scenes::on_ranks(ranks, [&](std::shared_ptr<spot::Communicator> communicator) {
     const int rank = communicator->rank();
     std::vector<Grain> part;
@@ -105,6 +107,7 @@ Places drain(int ranks, double restart) {
     for (const Event& event : events()) {
       drainage->advance_to(event.time);
       drainage->change_grains(part_of(event, rank, ranks));
+      EXPECT_EQ(followed.check(*drainage), -1);
       if (restart > event.time && restart < event.time + 0.5) {
         drainage->advance_to(restart);
         std::vector<Bytes> parts = communicator->share_with_all(drainage->save());
@@ -112,6 +115,7 @@ Places drain(int ranks, double restart) {
       }
     }
     drainage->advance_to(2.0);
+    EXPECT_EQ(followed.check(*drainage), -1);
     const std::lock_guard<std::mutex> lock(mutex);
     for (const auto& [id, grain] : places(*drainage)) EXPECT_TRUE(outcome.emplace(id, grain).second) << id;
   });

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
@@ -47,6 +48,37 @@ inline Overlaps overlaps_of(const std::vector<spot::Grain>& grains, double diame
   overlaps.badness /= static_cast<double>(grains.size());
   return overlaps;
 }
+
+/// Where grains are to somebody who is told only of those that may have moved since he asked last. Ranks may share it.
+class Followed {
+ public:
+  /// The grain of this drainage, of one rank, that is elsewhere than he thinks, or -1.
+  std::int64_t check(spot::Drainage& drainage) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    drainage.visit_grains(
+        [&](const spot::Grain& grain) {
+          ++told_;
+          place_of_[grain.id] = grain.position;
+        },
+        spot::Which::moved);
+    drainage.forget_moved();
+    std::int64_t elsewhere = -1;
+    drainage.visit_grains([&](const spot::Grain& grain) {
+      ++all_;
+      const auto known = place_of_.find(grain.id);
+      if (known == place_of_.end() || known->second != grain.position) elsewhere = grain.id;
+    });
+    return elsewhere;
+  }
+
+  /// Of all grains at all times, the share that he was told of.
+  double share() const { return told_ / all_; }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::int64_t, spot::Vector3> place_of_;
+  double told_ = 0.0, all_ = 0.0;
+};
 
 /// Follows one drainage from its start.
 class Ledger {

@@ -68,6 +68,23 @@ TEST(QuantumUnit, RoundsToTheNearestMultiple) {
   EXPECT_EQ(quantum.round(0.51 * q), q);
 }
 
+TEST(QuantumBruteForce, PositionsGoToTheNearestMultipleWhereverTheyAre) {
+  scenes::Draws draws(3);
+  for (const double extent : {1.0, 100.0, 1e9}) {
+    const Quantum quantum(1.0, extent, 24);
+    const double q = quantum.length();
+    const auto expect_nearest = [&](double position) {
+      const double nearest = std::nearbyint(position / q) * q, snapped = quantum.snap(position);
+      EXPECT_EQ(snapped, nearest) << position;
+      EXPECT_EQ(std::signbit(snapped), std::signbit(nearest)) << position;
+    };
+    for (int i = 0; i < 10000; ++i) expect_nearest(draws.uniform(-extent, extent));
+    for (const double near : {0.0, 1.0, extent, std::ldexp(q, 51)})
+      for (const double quanta : {-2.5, -1.5, -1.0, -0.5, -0.4, -0.0, 0.0, 0.4, 0.5, 1.0, 1.5, 2.5})
+        for (const double sign : {-1.0, 1.0}) expect_nearest(sign * near + quanta * q);
+  }
+}
+
 TEST(QuantumUnit, RoundingIsAntisymmetric) {
   const Quantum quantum(1.0, 100.0);
   scenes::Draws draws(2);

@@ -638,7 +638,7 @@ TEST(TiledPackingAnalytic, ListsHoldGapsAsLongAsPairsInContact) {
     const auto by = static_cast<std::int32_t>(0.5 * (start - 1.04) / packing.quantum().length());
     cells.visit_own([&](std::uint32_t slot) {
       cells.points[slot].x += cells.ids[slot] == 1 ? by : -by;
-      cells.drift[cells.cell_of(slot)] = by;
+      cells.drift.add(cells.cell_of(slot), by);
     });
     packing.update_lists(*space, workers);
     sweeps.sweep(0, 1.0, *space, workers);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "invariants.hpp"
 #include "plain_packing.hpp"
 #include "scenes.hpp"
 #include "spot/drivers/time_ordered_drainage.hpp"
@@ -335,6 +336,20 @@ TEST(WindowedDrainageUnit, NobodyIsLostOrOutside) {
     EXPECT_EQ(drainage.grains().size() + drained.size(), grains.size());
     EXPECT_LT(drainage.largest_overlap().depth, 0.1);
   }
+}
+
+TEST(WindowedDrainageUnit, WhoIsFarFromTheFlowIsAtRest) {
+  const auto grains = scenes::dense_grains({-29.5, -3.5, 0.5}, {29.5, 3.5, 6.0}, 0.01, 2);
+  WindowedDrainage drainage(coarse_spots(), coarse_relaxation(), {-1.0}, window, 2, scenes::small_silo(30.0, 4.0), 1.0,
+                            100.0, grains);
+  invariants::Followed followed;
+  for (int step = 0; step < 20; ++step) {
+    drainage.advance_to(0.1 * step);
+    ASSERT_EQ(followed.check(drainage), -1) << step;
+  }
+  EXPECT_GT(drainage.counters().drained, 10);
+  EXPECT_GT(followed.share(), 0.05 + 0.1) << "all of them once, then those that flow";
+  EXPECT_LT(followed.share(), 0.5);
 }
 
 TEST(WindowedDrainageUnit, WindowsThatAreTooLongAreRefusedWithTheirBound) {

@@ -29,8 +29,9 @@ Quantum::Quantum(double diameter, double extent, int bits) {
                                    " diameters between neighbouring numbers; at most 1e-6 is allowed: move the origin "
                                    "closer to the grains"));
   shift_ = 1.5 * std::ldexp(length_, 52);
+  near_ = std::ldexp(length_, 51);
 }
 
-double Quantum::snap(double position) const { return std::nearbyint(position / length_) * length_; }
+double Quantum::snap_far(double position) const { return std::nearbyint(position / length_) * length_; }
 
 }  // namespace spot

@@ -111,9 +111,9 @@ void Drainage::add_drained(const std::vector<Grain>& grains, Spots& spots) {
   counters_.drained += static_cast<std::int64_t>(grains.size());
 }
 
-void Drainage::require_inside() const {
+void Drainage::require_inside(Which which) const {
   const auto require = [&](const Grain& grain) { checks_.require_inside(grain); };
-  container().concurrent() ? visit_grains_at_once(require) : visit_grains(require);
+  container().concurrent() ? visit_grains_at_once(require, which) : visit_grains(require, which);
 }
 
 void Drainage::replace_container(std::shared_ptr<const Container> container) {

@@ -194,7 +194,7 @@ void TimeOrderedDrainage::take_new_container() {
   spots_.replace_container(container());
 }
 
-void TimeOrderedDrainage::visit_grains(const std::function<void(const Grain&)>& visit) const {
+void TimeOrderedDrainage::visit_grains(const VisitGrain& visit, Which) const {
   for (std::size_t i = 0; i < packing_.slots(); ++i)
     if (packing_.present(i)) visit(packing_.grain(i));
 }

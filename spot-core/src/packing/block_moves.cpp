@@ -223,7 +223,7 @@ void BlockMoves::add_drift(Part& part, std::size_t first, std::int32_t limit) {
   while (part.counted < middles_.size() && !part.must_rebuild) {
     const std::int32_t length = lengths_[part.counted];
     part.visit_cells(part.counted++, [&](std::uint32_t cell) {
-      cells_.drift[cell] += length;
+      cells_.drift.add(cell, length);
       part.must_rebuild |= cells_.drift[cell] > limit;
     });
   }
@@ -238,7 +238,9 @@ void BlockMoves::apply(std::size_t first, std::size_t end, Workers& workers, std
 /// The drift that was added for moves beyond the end is taken back.
 void BlockMoves::apply(Part& part, std::size_t first, std::size_t end, std::uint32_t* received) {
   for (; part.counted > end; --part.counted)
-    part.visit_cells(part.counted - 1, [&](std::uint32_t cell) { cells_.drift[cell] -= lengths_[part.counted - 1]; });
+    part.visit_cells(part.counted - 1, [&](std::uint32_t cell) {
+      cells_.drift.set(cell, cells_.drift[cell] - lengths_[part.counted - 1]);
+    });
   for (std::size_t m = first; m < end; ++m) {
     part.visit_cells(m, [&](std::uint32_t cell) {
       cells_.unrelaxed[cell] = std::min(cells_.unrelaxed[cell] + Cells::parts_of_move, most_unrelaxed);

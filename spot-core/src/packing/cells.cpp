@@ -68,7 +68,7 @@ void Cells::hold(const Slabs& slabs, int rank) {
   ids.assign(slots, -1);
   if (unequal_) sizes.assign(slots, size_of(0.5 * lattice().diameter()));
   unrelaxed.assign(n, 0);
-  drift.assign(n, 0);
+  drift.assign(n);
   changed_ = {};
   changed_in_images_.clear();
   size_ = 0;
@@ -149,6 +149,7 @@ void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, cons
   if (tilted_) tilts.set(slot, {0, 0, 0, 0});
   if (unequal_) sizes[slot] = size_of(radius);
   note_change(slot);
+  drift.note_moved(cell_of(slot));
   if (!own(cell_of(slot))) return;
   ++size_;
   if (point.state != Point::free && point.state != Point::held) in_motion.push_back(place_of(slot));
@@ -208,8 +209,9 @@ std::vector<std::int64_t> Cells::grains_in_own_layers() const {
 
 std::size_t Cells::memory() const {
   return bytes_in(points, references, corrections, coordinates.x, coordinates.y, coordinates.z,
-                  coordinates.state_squared, tilts.x, tilts.y, tilts.z, tilts.level, ids, sizes, unrelaxed, drift,
-                  in_motion, first_slot_, cell_of_, changed_[0], changed_[1], changed_in_images_);
+                  coordinates.state_squared, tilts.x, tilts.y, tilts.z, tilts.level, ids, sizes, unrelaxed, in_motion,
+                  first_slot_, cell_of_, changed_[0], changed_[1], changed_in_images_) +
+         drift.memory();
 }
 
 }  // namespace spot

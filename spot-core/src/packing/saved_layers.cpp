@@ -60,7 +60,7 @@ void SavedLayers::fill(Cells& into) const {
   for (const SavedCell& cell : cells) {
     if (!is_own(cell.cell)) continue;
     into.unrelaxed[held(cell.cell)] = cell.unrelaxed;
-    into.drift[held(cell.cell)] = cell.drift;
+    into.drift.set(held(cell.cell), cell.drift);
   }
 }
 

@@ -43,7 +43,7 @@ void put_up(Cells& cells, std::uint32_t slot, double height) {
   const double up = std::ceil((height - cells.position(slot).z()) / cells.lattice().quantum().length());
   const auto by = static_cast<std::int32_t>(up);
   cells.points[slot].z = add(cells.points[slot].z, by);
-  cells.drift[cells.cell_of(slot)] += by;
+  cells.drift.add(cells.cell_of(slot), by);
 }
 
 }  // namespace
@@ -156,7 +156,7 @@ void TiledPacking::find_drifted(Workers& workers) {
         const std::uint32_t slot = cells_.slot(place);
         if (squared_distance(cells_.points[slot], cells_.references[slot]) > kept * kept) far.push_back(place);
       }
-    cells_.drift[cell] = static_cast<std::int32_t>(std::min(1.001 * std::sqrt(squared), kept)) + 1;
+    cells_.drift.set(cell, static_cast<std::int32_t>(std::min(1.001 * std::sqrt(squared), kept)) + 1);
   };
   far_.resize(static_cast<std::size_t>(workers.size()));
   for (std::vector<Place>& far : far_) far.clear();
@@ -228,11 +228,11 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
 
 // ---- the rest
 
-void TiledPacking::visit_grains(const std::function<void(const Grain&)>& visit, Workers* workers) const {
+void TiledPacking::visit_grains(const VisitGrain& visit, Which which, Workers* workers) const {
   const auto visit_cells = [&](int, std::size_t first, std::size_t last) {
     for (std::uint32_t k = static_cast<std::uint32_t>(first); k < last; ++k) {
       const std::uint32_t cell = cells_.first_own() + k;
-      if (cells_.is_image(cell)) continue;
+      if (cells_.is_image(cell) || (which == Which::moved && !cells_.drift.moved(cell))) continue;
       const Cell listed_in = cells_.lattice().cell(cell);
       cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.grain(slot, listed_in)); });
     }

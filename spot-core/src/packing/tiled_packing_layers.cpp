@@ -155,8 +155,8 @@ void TiledPacking::grow(const std::array<int, 3>& below, const std::array<int, 3
   for (const SavedCell& cell : entered) {
     const Cell at = lattice.cell_in_all(cell.cell);
     if (cells_.slabs().owner(at.z) != communicator_->rank()) continue;
-    std::int32_t& drift = cells_.drift[lattice.number_of(at)];
-    drift = std::max(drift, cell.drift);
+    const std::uint32_t number = lattice.number_of(at);
+    cells_.drift.set(number, std::max(cells_.drift[number], cell.drift));
   }
 }
 

@@ -125,7 +125,8 @@ void CellRelaxation::correct(Task& task, std::int32_t parts, float deepest) {
     cells.unrelaxed[cell] -= parts;
     if (corrections.depth > deepest) cells.unrelaxed[cell] = std::max(cells.unrelaxed[cell], parts);
     // A little more than it may be, for the rounding.
-    cells.drift[cell] += static_cast<std::int32_t>(std::min(1.001f * std::sqrt(corrections.longest_squared), 1e9f)) + 1;
+    cells.drift.add(cell,
+                    static_cast<std::int32_t>(std::min(1.001f * std::sqrt(corrections.longest_squared), 1e9f)) + 1);
   }
 }
 

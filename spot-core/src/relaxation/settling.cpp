@@ -197,8 +197,7 @@ void Settling::move(std::uint32_t slot, const Point& by, std::int32_t state) {
   const int waited = std::abs(down) < creeping * roll ? patience_with_rolls : 1;
   last = {by.x, by.y, by.z, down > 2.0 * roll ? 0 : last.state + waited};
   if (state == Point::laid) last = {0, 0, 0, 0};
-  std::int32_t& drift = cells_.drift[cells_.cell_of(slot)];
-  drift = static_cast<std::int32_t>(std::min<std::int64_t>(std::int64_t{drift} + length_of(by), 1 << 30));
+  cells_.drift.add(cells_.cell_of(slot), length_of(by));
   cells_.note_change(slot);
 }
 

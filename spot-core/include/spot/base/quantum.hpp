@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <cmath>
+
 namespace spot {
 
 /// The length of which all grain positions are multiples.
@@ -23,11 +25,16 @@ class Quantum {
   double round(double displacement) const { return (displacement + shift_) - shift_; }
 
   /// The nearest multiple, for a position: |position| up to `extent`.
-  double snap(double position) const;
+  double snap(double position) const {
+    return std::abs(position) < near_ ? std::copysign(round(position), position) : snap_far(position);
+  }
 
  private:
+  double snap_far(double position) const;
+
   double length_;
   double shift_;
+  double near_;  // 2^51 quanta: where a position can be rounded as a displacement
 };
 
 }  // namespace spot

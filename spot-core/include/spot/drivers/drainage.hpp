@@ -53,28 +53,30 @@ class Drainage {
   /// Goes on with another number of threads, where the driver has any. Throws InvalidParameter as Workers does.
   virtual void set_threads(int) {}
 
-  /// Calls visit(grain) for all grains, in no particular order.
-  virtual void visit_grains(const std::function<void(const Grain&)>& visit) const = 0;
+  /// Calls visit(grain) for all grains, or for all that may have moved, or come, since forget_moved(), and perhaps
+  /// others; in no particular order.
+  virtual void visit_grains(const VisitGrain& visit, Which which = Which::all) const = 0;
   /// The same, from all threads of the driver at once.
-  virtual void visit_grains_at_once(const std::function<void(const Grain&)>& visit) const { visit_grains(visit); }
+  virtual void visit_grains_at_once(const VisitGrain& visit, Which which = Which::all) const {
+    visit_grains(visit, which);
+  }
+  virtual void forget_moved() {}
   /// Calls job(first, last) for parts of 0 ... n, exclusive, on all threads of the driver.
   virtual void share_out(std::size_t n, const std::function<void(std::size_t, std::size_t)>& job) const { job(0, n); }
 
-  /// All coordinates of grains are multiples of it.
-  virtual const Quantum& quantum() const = 0;
+  virtual const Quantum& quantum() const = 0;  ///< all coordinates of grains are multiples of it
   virtual std::vector<Spot> spots() const = 0;
   virtual Overlap largest_overlap() = 0;
   /// Bytes that packing and spots take on this rank, with all that is kept from one move or window to the next.
   virtual std::size_t memory() const = 0;
   /// All that is needed to go on from here with the same bits, walls and parameters apart: the part of this rank.
   virtual Bytes save() const = 0;
-  /// Counters over all ranks.
-  virtual Counters total() { return counters_; }
+  virtual Counters total() { return counters_; }  ///< over all ranks
   /// All grains, in increasing order of ids.
   std::vector<Grain> grains() const;
 
-  /// Throws InvalidPacking, naming the grain, if one has left the container other than through an outlet.
-  void require_inside() const;
+  /// Throws InvalidPacking, naming the grain, if one of these has left the container other than through an outlet.
+  void require_inside(Which which = Which::all) const;
   /// Of this rank: its spots, its grains; of sweeps, those on all ranks.
   const Counters& counters() const { return counters_; }
 
@@ -130,8 +132,7 @@ class Drainage {
  private:
   /// Carries out what change_grains() has checked; returns the largest overlap of a grain that came, as it came.
   virtual Overlap carry_out(const GrainChanges& changes) = 0;
-  /// There are other walls now.
-  virtual void take_new_container() = 0;
+  virtual void take_new_container() = 0;  ///< there are other walls now
   /// Of births.
   virtual const Injection& rates() const = 0;
   /// They are others from a time on. Throws InvalidParameter if they are too many.

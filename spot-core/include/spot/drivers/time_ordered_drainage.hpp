@@ -30,7 +30,7 @@ class TimeOrderedDrainage : public Drainage {
 
   Bytes save() const override;
   void advance_to(double time) override;
-  void visit_grains(const std::function<void(const Grain&)>& visit) const override;
+  void visit_grains(const VisitGrain& visit, Which which = Which::all) const override;
   const Quantum& quantum() const override { return packing_.quantum(); }
   std::vector<Spot> spots() const override { return spots_.live(); }
   Overlap largest_overlap() override;

@@ -46,10 +46,13 @@ class WindowedDrainage : public Drainage {
   Bytes save() const override;
   void advance_to(double time) override;
   void set_threads(int threads) override { workers_ = std::make_unique<Workers>(threads); }
-  void visit_grains(const std::function<void(const Grain&)>& visit) const override { packing_.visit_grains(visit); }
-  void visit_grains_at_once(const std::function<void(const Grain&)>& visit) const override {
-    packing_.visit_grains(visit, workers_.get());
+  void visit_grains(const VisitGrain& visit, Which which = Which::all) const override {
+    packing_.visit_grains(visit, which);
   }
+  void visit_grains_at_once(const VisitGrain& visit, Which which = Which::all) const override {
+    packing_.visit_grains(visit, which, workers_.get());
+  }
+  void forget_moved() override { packing_.cells().drift.forget_moved(); }
   void share_out(std::size_t n, const std::function<void(std::size_t, std::size_t)>& job) const override {
     workers_->share_out(n, [&](int, std::size_t first, std::size_t last) { job(first, last); });
   }

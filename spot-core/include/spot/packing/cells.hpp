@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "spot/base/aligned_vector.hpp"
+#include "spot/packing/cell_drift.hpp"
 #include "spot/packing/coordinates.hpp"
 #include "spot/packing/grain.hpp"
 #include "spot/packing/held_cells.hpp"
@@ -126,7 +127,7 @@ class Cells : public HeldCells {
   std::vector<GrainSize> sizes;                          ///< if they are unequal
   // Of every cell.
   std::vector<std::int32_t> unrelaxed;  ///< moves that have reached into it since it was relaxed, in sixteenths
-  std::vector<std::int32_t> drift;      ///< no grain is farther from its reference, in quanta
+  CellDrift drift;                      ///< how far grains may be from their references
   /// Places of this rank to which grains came that are neither free nor held, and perhaps others.
   std::vector<Place> in_motion;
 

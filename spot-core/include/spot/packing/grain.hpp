@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "spot/base/vector.hpp"
 
@@ -18,6 +19,10 @@ struct Grain {
     return id == other.id && position == other.position && held == other.held && radius == other.radius;
   }
 };
+
+using VisitGrain = std::function<void(const Grain&)>;
+/// Grains to be visited: all of them, or those that may have moved.
+enum class Which { all, moved };
 
 /// The largest overlap of two grains and whose it is.
 struct Overlap {

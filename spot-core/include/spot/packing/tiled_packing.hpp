@@ -62,8 +62,8 @@ class TiledPacking {
   /// busiest rank than it costs. Returns whether it has.
   bool balance(const Container& container);
 
-  /// Calls visit(grain) for all grains of this rank, in no particular order; from all threads at once, if there are.
-  void visit_grains(const std::function<void(const Grain&)>& visit, Workers* workers = nullptr) const;
+  /// Calls visit(grain) for these grains of this rank, in no particular order; from all threads at once, if there are.
+  void visit_grains(const VisitGrain& visit, Which which = Which::all, Workers* workers = nullptr) const;
 
   /// Gives moves their weights, when it is told the volume of this rank's grains that each of them encloses.
   using Weigh = std::function<void(const std::vector<int>& enclosed, std::vector<Move>& moves)>;
