@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "packing/kernels.hpp"
 #include "packing/wrapped_integers.hpp"
@@ -191,14 +192,21 @@ Grain Cells::grain(std::uint32_t slot, const Cell& listed_in) const {
 
 void Cells::visit_uncovered(const std::function<void(const Vector3&)>& visit,
                             const std::function<bool(const Vector3& low, const Vector3& high)>& is_covered) const {
-  for (std::uint32_t end = last_own(); end > first_own(); end -= in_layer())
-    for (std::uint32_t cell = end - in_layer(); cell < end; ++cell) {
-      if (is_image(cell)) continue;
+  const double most = drift.largest() * lattice().quantum().length();
+  std::vector<std::uint32_t> open(in_layer());  // cells of a layer over which nobody is known to cover them
+  std::iota(open.begin(), open.end(), 0u);
+  for (std::uint32_t layer = last_own(); layer > first_own() && !open.empty();) {
+    layer -= in_layer();
+    const auto is_done = [&](std::uint32_t place) {
+      const std::uint32_t cell = layer + place;
+      if (is_image(cell)) return true;
       const auto [low, high] = lattice().corners(lattice().cell(cell));
-      const double most = drift[cell] * lattice().quantum().length();
-      if (is_covered(low.array() - most, high.array() + most)) continue;
+      if (is_covered(low.array() - most, high.array() + most)) return true;
       this->visit(cell, cell + 1, [&](std::uint32_t slot) { visit(position(slot)); });
-    }
+      return false;
+    };
+    open.erase(std::remove_if(open.begin(), open.end(), is_done), open.end());
+  }
 }
 
 std::vector<std::int64_t> Cells::grains_in_own_layers() const {

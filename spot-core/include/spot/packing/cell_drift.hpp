@@ -22,6 +22,8 @@ class CellDrift {
 
   std::int32_t operator[](std::uint32_t cell) const { return bound_[cell]; }
   const std::int32_t* data() const { return bound_.data(); }
+  /// Of any cell.
+  std::int32_t largest() const { return bound_.empty() ? 0 : *std::max_element(bound_.begin(), bound_.end()); }
 
   /// Grains of the cell move by at most this.
   void add(std::uint32_t cell, std::int32_t length) {

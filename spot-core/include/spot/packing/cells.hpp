@@ -88,7 +88,7 @@ class Cells : public HeldCells {
   }
 
   /// Calls visit(position) for own grains, layer by layer from the top, but for those of cells that are covered, when
-  /// it is told between which corners their grains are.
+  /// it is told between which corners their grains are. Whatever is below a covered cell must be covered, too.
   void visit_uncovered(const std::function<void(const Vector3&)>& visit,
                        const std::function<bool(const Vector3& low, const Vector3& high)>& is_covered) const;
 
