@@ -702,6 +702,7 @@ std::vector<std::int64_t> FixSpot::hash_of_lammps() const {
 
 /// After the fix has written what it knows. Those that leave are LAMMPS' until it drops them.
 void FixSpot::remember_grains() {
+  model->drainage->forget_moved();
   model->remembered = hash_of_lammps();
   const spot::Quantum &quantum = model->drainage->quantum();
   for (const tagint grain : model->leaving) {
@@ -788,7 +789,6 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
   if (comm->nprocs == 1) {
     model->drainage->visit_grains_at_once([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); },
                                           which);
-    model->drainage->forget_moved();
     for (const spot::Grain &grain : drained) model->leaving.push_back(static_cast<tagint>(grain.id));
     return;
   }
@@ -798,7 +798,6 @@ void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_s
     deliveries.push_back({grain.id, {at.x(), at.y(), at.z()}, left});
   };
   model->drainage->visit_grains([&](const spot::Grain &grain) { add(grain, false); }, which);
-  model->drainage->forget_moved();
   for (const spot::Grain &grain : drained) add(grain, true);
   for (const Delivery &delivery : deliver(deliveries, {atom->tag, atom->tag + atom->nlocal}, *model->ranks)) {
     if (delivery.left)
