@@ -21,7 +21,6 @@ struct Change {
 };
 
 struct PinnedScene {
-  std::string name;
   bool time_ordered = false;
   spot::SpotParameters spots;
   spot::RelaxationParameters relaxation;
@@ -32,8 +31,14 @@ struct PinnedScene {
   double window = 0.05, end = 1.5;
   std::vector<Change> changes;
   bool counts_moves = false;  // of each grain
+};
 
-  friend void PrintTo(const PinnedScene& scene, std::ostream* out) { *out << scene.name; }
+/// Made when it is asked for: every test of the program would wait for all of them.
+struct NamedScene {
+  std::string name;
+  std::function<PinnedScene()> make;
+
+  friend void PrintTo(const NamedScene& scene, std::ostream* out) { *out << scene.name; }
 };
 
 /// All of them; names say what each adds to spots that carry a volume of 2006 through a box.
@@ -45,14 +50,14 @@ class PinnedScenes {
     add_windowed();
     add_time_ordered();
     for (const bool time_ordered : {false, true}) {
-      add(plain(time_ordered, "all-ingredients"), all_ingredients);
-      add(plain(time_ordered, "spread"), spreading);
-      add(plain(time_ordered, "outflow"), holding_outflow);
-      add(plain(time_ordered, "fade"), fading);
-      add(plain(time_ordered, "mobility"), mobile);
+      add(time_ordered, "all-ingredients", all_ingredients);
+      add(time_ordered, "spread", spreading);
+      add(time_ordered, "outflow", holding_outflow);
+      add(time_ordered, "fade", fading);
+      add(time_ordered, "mobility", mobile);
     }
   }
-  const std::vector<PinnedScene>& all() const { return all_; }
+  const std::vector<NamedScene>& all() const { return all_; }
 
  private:
   static constexpr double half_width = 5.0, half_depth = 4.0;
@@ -62,9 +67,8 @@ class PinnedScenes {
                         2);
   }
 
-  static PinnedScene plain(bool time_ordered, const std::string& name) {
+  static PinnedScene plain(bool time_ordered) {
     PinnedScene scene;
-    scene.name = (time_ordered ? "time-ordered-" : "windowed-") + name;
     scene.time_ordered = time_ordered;
     scene.spots = paper_spots();
     scene.spots.influence = 1e-2;
@@ -78,9 +82,12 @@ class PinnedScenes {
     return scene;
   }
 
-  void add(PinnedScene scene, const std::function<void(PinnedScene&)>& alter) {
-    alter(scene);
-    all_.push_back(std::move(scene));
+  void add(bool time_ordered, const std::string& name, const std::function<void(PinnedScene&)>& alter) {
+    all_.push_back({(time_ordered ? "time-ordered-" : "windowed-") + name, [time_ordered, alter] {
+                      PinnedScene scene = plain(time_ordered);
+                      alter(scene);
+                      return scene;
+                    }});
   }
 
   static void into_cylinder(PinnedScene& scene) {
@@ -166,7 +173,7 @@ class PinnedScenes {
 
   void add_to_both_drivers(bool time_ordered) {
     const auto scene = [&](const char* name, const std::function<void(PinnedScene&)>& alter) {
-      add(plain(time_ordered, name), alter);
+      add(time_ordered, name, alter);
     };
     scene("plain", [](PinnedScene&) {});
     scene("parabolic", [](PinnedScene& s) { s.spots.profile = spot::InfluenceProfile::parabolic; });
@@ -236,7 +243,7 @@ class PinnedScenes {
 
   void add_windowed() {
     const auto scene = [&](const char* name, const std::function<void(PinnedScene&)>& alter) {
-      add(plain(false, name), alter);
+      add(false, name, alter);
     };
     scene("momentum", [](PinnedScene& s) { s.relaxation.momentum = 0.8; });
     scene("exact", [](PinnedScene& s) { s.relaxation.tolerance = 5e-4; });
@@ -250,7 +257,7 @@ class PinnedScenes {
   /// The schedules of relaxation that 2010 compares.
   void add_time_ordered() {
     const auto scene = [&](const char* name, spot::RelaxationSchedule schedule, int every) {
-      add(plain(true, name), [&](PinnedScene& s) {
+      add(true, name, [schedule, every](PinnedScene& s) {
         s.relaxation.schedule = schedule;
         s.relaxation.every = every;
       });
@@ -262,7 +269,7 @@ class PinnedScenes {
     scene("no-relaxation", spot::RelaxationSchedule::moves, 0);
   }
 
-  std::vector<PinnedScene> all_;
+  std::vector<NamedScene> all_;
 };
 
 }  // namespace scenes

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "random_solid.hpp"
+#include "sanitized.hpp"
 #include "scenes.hpp"
 
 namespace {
@@ -32,11 +33,7 @@ using testing::HasSubstr;
 
 constexpr double reach = 0.6;
 
-#ifdef SPOT_SANITIZED
-constexpr int solids = 1000;
-#else
-constexpr int solids = 10000;
-#endif
+const int solids = scenes::sanitized() ? 1000 : 10000;
 
 /// Evenly spread over the sphere (Fibonacci).
 std::vector<Vector3> directions(int n) {

@@ -13,6 +13,7 @@
 
 #include "invariants.hpp"
 #include "ranks_of_threads.hpp"
+#include "sanitized.hpp"
 #include "scenes.hpp"
 #include "spot/drivers/recirculation.hpp"
 
@@ -29,11 +30,7 @@ void expect_looser_at_rest(const spot::InvalidParameter& error) {
                                            testing::HasSubstr("the packing at rest has 0.")));
 }
 
-#ifdef SPOT_SANITIZED
-constexpr std::uint64_t scenes_in_ci = 16;
-#else
-constexpr std::uint64_t scenes_in_ci = 60;
-#endif
+const std::uint64_t scenes_in_ci = scenes::sanitized() ? 16 : 60;
 
 /// Every invariant, as the drainage goes on; and the same once more, from a saved state half way.
 TEST(GeneralScenesInvariance, HoldWhatEveryDrainageHolds) {

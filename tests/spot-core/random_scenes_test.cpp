@@ -9,6 +9,7 @@
 
 #include "invariants.hpp"
 #include "random_scene.hpp"
+#include "sanitized.hpp"
 
 namespace {
 
@@ -67,13 +68,7 @@ void check_scenes(std::uint64_t scenes) {
   EXPECT_LE(collapsed, 1 + scenes / 500) << "scenes collapsed";
 }
 
-#ifdef SPOT_SANITIZED
-constexpr std::uint64_t scenes_in_ci = 60;
-#else
-constexpr std::uint64_t scenes_in_ci = 300;
-#endif
-
-TEST(RandomScenesInvariance, HoldWhatEveryDrainageHolds) { check_scenes(scenes_in_ci); }
+TEST(RandomScenesInvariance, HoldWhatEveryDrainageHolds) { check_scenes(scenes::sanitized() ? 30 : 300); }
 
 /// SPOT_SCENES: how many.
 TEST(RandomScenesSlow, HoldWhatEveryDrainageHolds) { check_scenes(number_from("SPOT_SCENES", 10000)); }

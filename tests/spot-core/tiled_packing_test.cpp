@@ -67,7 +67,6 @@ bool none_is_closed(const Vector3&) { return false; }
 
 /// What is done to a packing. Lengths in diameters; the numbers of the default are for a box of 11 x 7 x 8 centres.
 struct Treatment {
-  std::string name;
   std::function<std::shared_ptr<const spot::Container>()> container = [] { return scenes::small_silo(6.0, 4.0); };
   std::vector<Grain> grains = scenes::dense_grains({-5.5, -3.5, 0.5}, {5.5, 3.5, 8.0}, 0.01, 7);
   RelaxationParameters relaxation = {};
@@ -80,7 +79,13 @@ struct Treatment {
   double diameter = 1.0, extent = 100.0, outlet = -1.0;
 };
 
-void PrintTo(const Treatment& treatment, std::ostream* out) { *out << treatment.name; }
+/// Made when it is asked for: every test of the program would wait for all of them.
+struct NamedTreatment {
+  std::string name;
+  std::function<Treatment()> make;
+};
+
+void PrintTo(const NamedTreatment& treatment, std::ostream* out) { *out << treatment.name; }
 
 RelaxationParameters relaxation_with(double alpha, double momentum,
                                      RelaxationStrength strength = RelaxationStrength::half_each) {
@@ -91,30 +96,30 @@ RelaxationParameters relaxation_with(double alpha, double momentum,
   return relaxation;
 }
 
-Treatment plain_box() { return {"Box"}; }
+Treatment plain_box() { return {}; }
 
 Treatment of_2006() {
-  Treatment t{"Of2006"};
+  Treatment t;
   t.relaxation = relaxation_with(0.8, 0.0, RelaxationStrength::full_each);
   return t;
 }
 
 Treatment parabolic() {
-  Treatment t{"Parabolic"};
+  Treatment t;
   t.profile = spot::InfluenceProfile::parabolic;
   t.threads = 2;
   return t;
 }
 
 Treatment with_momentum() {
-  Treatment t{"Momentum"};
+  Treatment t;
   t.relaxation = relaxation_with(1.2, 0.7);
   t.threads = 2;
   return t;
 }
 
 Treatment with_contacts() {
-  Treatment t{"Contacts"};
+  Treatment t;
   t.relaxation = relaxation_with(0.8, 0.67);
   t.relaxation.contact_overlap = 1.5e-3;
   return t;
@@ -122,7 +127,6 @@ Treatment with_contacts() {
 
 Treatment closing() {
   Treatment t = with_contacts();
-  t.name = "Closing";
   t.relaxation.closing_gap = 0.02;
   t.relaxation.closing_share = 0.3;
   t.threads = 2;
@@ -130,7 +134,7 @@ Treatment closing() {
 }
 
 Treatment with_held_grains() {
-  Treatment t{"Held"};
+  Treatment t;
   t.relaxation = relaxation_with(1.2, 0.7);
   for (std::size_t i = 0; i < t.grains.size(); i += 5) t.grains[i].held = true;
   return t;
@@ -138,7 +142,7 @@ Treatment with_held_grains() {
 
 /// Pairs and a triple at the same places; some of them held.
 Treatment coincident() {
-  Treatment t{"Coincident"};
+  Treatment t;
   t.relaxation = relaxation_with(0.8, 0.5);
   for (const std::size_t i : {20, 100, 100, 300, 400, 401}) {
     Grain twin = t.grains[i];
@@ -152,7 +156,7 @@ Treatment coincident() {
 
 /// Grains jump by more than their diameter.
 Treatment large_steps() {
-  Treatment t{"LargeSteps"};
+  Treatment t;
   t.largest_step = 1.5;
   t.moves_in_call = 4;
   t.calls = 60;
@@ -161,7 +165,7 @@ Treatment large_steps() {
 
 /// Many steps in one call, along which grains go much farther than lists allow.
 Treatment many_moves() {
-  Treatment t{"ManyMoves"};
+  Treatment t;
   t.largest_step = 0.05;
   t.one_way = true;
   t.moves_in_call = 300;
@@ -172,7 +176,7 @@ Treatment many_moves() {
 
 /// Higher than 2^32 quanta.
 Treatment tall() {
-  Treatment t{"Tall"};
+  Treatment t;
   t.grains = scenes::dense_grains({-1.3, -1.3, 0.0}, {1.3, 1.3, 330.0}, 0.01, 7);
   t.container = [] {
     auto column = scenes::empty_space();
@@ -194,7 +198,7 @@ Treatment tall() {
 }
 
 Treatment far_from_the_origin() {
-  Treatment t{"FarAway"};
+  Treatment t;
   const Vector3 there(1e5, -9.9e4, 8e4);
   for (Grain& grain : t.grains) grain.position += there;
   t.low += there;
@@ -208,7 +212,7 @@ Treatment far_from_the_origin() {
 
 /// A diameter that is no power of two.
 Treatment in_metres() {
-  Treatment t{"Metres"};
+  Treatment t;
   const double d = 3e-3;
   for (Grain& grain : t.grains) grain.position *= d;
   t.container = [d] {
@@ -222,7 +226,7 @@ Treatment in_metres() {
 }
 
 Treatment in_a_cylinder() {
-  Treatment t{"Cylinder"};
+  Treatment t;
   t.container = [] { return spot::cylinder_silo(0.5, 0.0, 4.5, spot::Orifice{{0, 0, 0}, 4.0}, {1.0, 1.0}); };
   t.grains.erase(
       std::remove_if(t.grains.begin(), t.grains.end(),
@@ -234,7 +238,7 @@ Treatment in_a_cylinder() {
 
 /// Walls across axes and others in one container.
 Treatment in_a_funnel() {
-  Treatment t{"Funnel"};
+  Treatment t;
   t.container = [] {
     auto funnel = std::make_unique<WalledContainer>(spot::Orifice{{0, 0, -9}, 4.0});
     funnel->add(std::make_unique<PlaneWall>(Vector3(-5.6, 0, 0), Vector3(1, 0, 0.2)), 0.0);
@@ -260,7 +264,7 @@ TEST(TiledPackingUnit, MoreAxisPlanesThanBitsAreStillWalls) {
 
 /// Radii from a quarter to half of the diameter.
 Treatment unequal() {
-  Treatment t{"Unequal"};
+  Treatment t;
   t.grains = scenes::unequal_grains(1200, {-6, -4, 0}, {6, 4, 9}, {}, 11);
   t.relaxation = relaxation_with(1.0, 0.6);
   t.relaxation.contact_overlap = 1.5e-3;
@@ -271,15 +275,14 @@ Treatment unequal() {
 
 Treatment unequal_closing() {
   Treatment t = unequal();
-  t.name = "UnequalClosing";
   t.relaxation.closing_gap = 0.05;
   t.relaxation.closing_share = 1.0;
   return t;
 }
 
 /// Moves reach across the ends of the period, and grains go through them.
-Treatment repeating(const char* name, bool x, bool y, bool equal) {
-  Treatment t{name};
+Treatment repeating(bool x, bool y, bool equal) {
+  Treatment t;
   const Vector3 low(-6, -5, 0), high(6, 5, 9);
   t.container = [=] { return scenes::repeated_silo(low, high, x, y, {{0, 0, 0}, 4.0}, {1.0, 1.0}); };
   t.grains = scenes::unequal_grains(equal ? 500 : 1200, low, high, t.container()->periodic(), 12, 1.0, equal);
@@ -292,7 +295,7 @@ Treatment repeating(const char* name, bool x, bool y, bool equal) {
   return t;
 }
 
-class TiledPackingBruteForce : public testing::TestWithParam<Treatment> {};
+class TiledPackingBruteForce : public testing::TestWithParam<NamedTreatment> {};
 
 /// Covered cells left out, the free surface is that of all grains. Returns how many were visited.
 std::size_t expect_same_surface(const TiledPacking& packing, const spot::Container& container, double diameter) {
@@ -314,7 +317,7 @@ std::size_t expect_same_surface(const TiledPacking& packing, const spot::Contain
 
 /// Moves and sweeps over everything, many more than a list survives.
 TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
-  const Treatment& t = GetParam();
+  const Treatment t = GetParam().make();
   const auto container = t.container();
   TiledPacking tiled(t.diameter, t.extent, t.outlet, t.grains, *container);
   PlainPacking plain(t.diameter, t.extent, t.outlet, t.grains, *container);
@@ -359,14 +362,21 @@ TEST_P(TiledPackingBruteForce, MovesAndSweepsEqualThePlainOnesToTheLastBit) {
   EXPECT_NEAR(tiled.largest_overlap().depth, deepest, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Treatments, TiledPackingBruteForce,
-                         testing::Values(plain_box(), of_2006(), parabolic(), with_momentum(), with_contacts(),
-                                         closing(), with_held_grains(), coincident(), large_steps(), many_moves(),
-                                         tall(), far_from_the_origin(), in_metres(), in_a_cylinder(), in_a_funnel(),
-                                         unequal(), unequal_closing(), repeating("AlongX", true, false, true),
-                                         repeating("AlongY", false, true, false),
-                                         repeating("AlongBoth", true, true, false)),
-                         [](const auto& treatment) { return treatment.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Treatments, TiledPackingBruteForce,
+    testing::Values(NamedTreatment{"Box", plain_box}, NamedTreatment{"Of2006", of_2006},
+                    NamedTreatment{"Parabolic", parabolic}, NamedTreatment{"Momentum", with_momentum},
+                    NamedTreatment{"Contacts", with_contacts}, NamedTreatment{"Closing", closing},
+                    NamedTreatment{"Held", with_held_grains}, NamedTreatment{"Coincident", coincident},
+                    NamedTreatment{"LargeSteps", large_steps}, NamedTreatment{"ManyMoves", many_moves},
+                    NamedTreatment{"Tall", tall}, NamedTreatment{"FarAway", far_from_the_origin},
+                    NamedTreatment{"Metres", in_metres}, NamedTreatment{"Cylinder", in_a_cylinder},
+                    NamedTreatment{"Funnel", in_a_funnel}, NamedTreatment{"Unequal", unequal},
+                    NamedTreatment{"UnequalClosing", unequal_closing},
+                    NamedTreatment{"AlongX", [] { return repeating(true, false, true); }},
+                    NamedTreatment{"AlongY", [] { return repeating(false, true, false); }},
+                    NamedTreatment{"AlongBoth", [] { return repeating(true, true, false); }}),
+    [](const auto& treatment) { return treatment.param.name; });
 
 TEST(TiledPackingBruteForce, LargestOverlapIsThatOfAllPairs) {
   const auto space = scenes::empty_space();

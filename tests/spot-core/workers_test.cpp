@@ -9,6 +9,7 @@
 #include <fstream>
 #include <set>
 
+#include "sanitized.hpp"
 #include "scenes.hpp"
 
 namespace {
@@ -115,9 +116,9 @@ TEST(WorkersUnit, CanBeMadeAndDroppedWithoutWork) {
   for (int k = 0; k < 200; ++k) Workers(1 + k % 4);
 }
 
-#ifndef SPOT_SANITIZED  // which need memory for every thread, too
 /// Where the system gives no room for so many stacks.
 TEST(WorkersUnit, ThreadsThatCannotStartAreNamed) {
+  if (scenes::sanitized()) GTEST_SKIP() << "sanitizers need memory for every thread, too";
   const auto in_little_room = [] {
     std::size_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
@@ -130,7 +131,6 @@ TEST(WorkersUnit, ThreadsThatCannotStartAreNamed) {
   };
   EXPECT_EXIT(in_little_room(), testing::ExitedWithCode(0), "number of threads is 256 but the system starts no more");
 }
-#endif
 
 TEST(WorkersUnit, NumbersOutOfRangeAreNamed) {
   for (const int bad : {0, -1, Workers::most + 1, 1 << 30})
