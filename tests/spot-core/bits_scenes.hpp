@@ -4,10 +4,10 @@
 
 #include <functional>
 #include <memory>
-#include <ostream>
 #include <string>
 #include <vector>
 
+#include "named.hpp"
 #include "scenes.hpp"
 #include "spot/drivers/drainage.hpp"
 
@@ -33,13 +33,7 @@ struct PinnedScene {
   bool counts_moves = false;  // of each grain
 };
 
-/// Made when it is asked for: every test of the program would wait for all of them.
-struct NamedScene {
-  std::string name;
-  std::function<PinnedScene()> make;
-
-  friend void PrintTo(const NamedScene& scene, std::ostream* out) { *out << scene.name; }
-};
+using NamedScene = Named<PinnedScene>;
 
 /// All of them; names say what each adds to spots that carry a volume of 2006 through a box.
 class PinnedScenes {

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "general_scene.hpp"
+#include "named.hpp"
 #include "plain_packing.hpp"
 #include "scenes.hpp"
 #include "spot/geometry/plane_wall.hpp"
@@ -79,13 +80,7 @@ struct Treatment {
   double diameter = 1.0, extent = 100.0, outlet = -1.0;
 };
 
-/// Made when it is asked for: every test of the program would wait for all of them.
-struct NamedTreatment {
-  std::string name;
-  std::function<Treatment()> make;
-};
-
-void PrintTo(const NamedTreatment& treatment, std::ostream* out) { *out << treatment.name; }
+using NamedTreatment = scenes::Named<Treatment>;
 
 RelaxationParameters relaxation_with(double alpha, double momentum,
                                      RelaxationStrength strength = RelaxationStrength::half_each) {
