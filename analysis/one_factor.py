@@ -47,7 +47,7 @@ CHOICES = {
     "tolerance 0.0012": {"options": "relax tol 0.0012"},
     "tolerance 0.0025": {"options": "relax tol 0.0025"},
     "tolerance 0.001, no momentum": {"options": "relax tol 0.001 momentum 0"},
-    "spots of constant w": {"volume": "0", "critical": "0", "dilatancy": "0"},
+    "spots of constant w": {"volume": "0", "critical": "0", "dilatancy": "0", "full_strain": "0"},
     # Whole fractions of the deck's timestep, 0.5 tau; its own window is 0.1 tau.
     **{f"window {window} tau": {"options": f"window {window * TAU}"} for window in (0.0025, 0.01, 0.02, 0.05, 0.25, 0.5)},
     **{f"order of time, dz {dz} d": {"options": f"accuracy exact dz {dz * D}"} for dz in (0.4, 0.8, 1.2)},

@@ -166,6 +166,8 @@ const std::map<std::string, Reader>& readers() {
          c.spots.exchange_length = w.positive("the exchange length");
        }},
       {"dilatancy", [](SpotCommand& c, Words& w) { c.spots.dilatancy = w.not_negative("the dilatancy"); }},
+      {"full_strain",
+       [](SpotCommand& c, Words& w) { c.spots.full_strain = w.not_negative("the strain of full exchange"); }},
       {"spread",
        [](SpotCommand& c, Words& w) {
          c.spots.spread = w.not_negative("the spread");
@@ -339,6 +341,7 @@ std::vector<std::pair<std::string, std::string>> SpotCommand::settings() const {
           {"dilation", precise(spots.dilation)},
           {"critical", precise(spots.critical_fraction, ' ', spots.exchange_length)},
           {"dilatancy", precise(spots.dilatancy)},
+          {"full_strain", precise(spots.full_strain)},
           {"spread", precise(spots.spread, ' ', spots.wall_shear)},
           {"mobility", precise(spots.mobility.at_rest, ' ', spots.mobility.fall, ' ', spots.mobility.drift)},
           {"surface", precise(spots.surface_exponent)},

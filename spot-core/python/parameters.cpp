@@ -93,6 +93,8 @@ void bind_numbers(Class& c) {
   number(c, "critical_fraction", spots, &S::critical_fraction, "phi_c: packing fraction of what flows. 0: none.");
   number(c, "exchange_length", spots, &S::exchange_length, "Of climb, in which spots bring a packing to it (length).");
   number(c, "dilatancy", spots, &S::dilatancy, "a: shear s for each length of fall lowers phi_c by a s (length).");
+  number(c, "full_strain", spots, &S::full_strain,
+         "s_1: strain for each length of fall from which spots exchange volume in full. 0: everywhere (1 / length).");
   number(c, "spread", spots, &S::spread, "B: sheared by s, free volume spreads sideways by B / s; 0: by b_s.");
   number(c, "wall_shear", spots, &S::wall_shear, "kappa: walls shear by kappa over their half-width.");
   bind_mobility(c);

@@ -31,7 +31,7 @@ const std::vector<std::string> valid = {
     "box -5 5 -4 4 orifice 0 0 0 3.5 speed 3.2 injection 388",
     "box -5 5 -4 4 orifice 0 0 0 3.5 speed 3.2 outflow 40 fade 0.25",
     "box -25 25 -4 4 orifice 0 0 0 4 speed 3.2 injection 380 volume 77 threads 2 steps together accuracy fast "
-    "critical 0.58 1.5 dilatancy 0.1 spread 0.6 0.7 mobility 0.4 1 1.5 surface 3 nonaffine 0.1 0.5",
+    "critical 0.58 1.5 dilatancy 0.1 full_strain 0.2 spread 0.6 0.7 mobility 0.4 1 1.5 surface 3 nonaffine 0.1 0.5",
     "cylinder 0 0 10 orifice 1 -2 0 4 speed 3.2 injection 388 seed 7 accuracy exact overlap 0.1 average 10",
     "region hopper orifice 0 0 0 4 profile uniform radius 2.6 influence 2.5e-3 diffusion 1.25 dz 0.1 speed 3.2 "
     "injection 388 outlet -1 relax every 10 strength full alpha 0.7 shell 2",

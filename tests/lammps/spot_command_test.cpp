@@ -51,7 +51,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
       "region silo orifice 1 -2 +3 4e0 radius 2.5 influence 1e-3 diffusion 1.5 dz 0.2 speed 2 injection 300 seed 17 "
       "outlet -1.5 buffer 0.5 0 window 0.25 relax every 10 strength full alpha 0.7 shell 2 overlap 0.1 average 5 "
       "accuracy fast momentum 0.3 contact 2e-3 volume 77.5 persistence 0.4 dilation 0.03 steps together threads 4 "
-      "critical 0.58 1.5 dilatancy 0.1 spread 0.6 0.7 surface 3 nonaffine 0.14 0.5 peratom yes");
+      "critical 0.58 1.5 dilatancy 0.1 full_strain 0.3 spread 0.6 0.7 surface 3 nonaffine 0.14 0.5 peratom yes");
   EXPECT_TRUE(c.uses_region());
   EXPECT_EQ(std::get<RegionWalls>(c.walls).id, "silo");
   EXPECT_EQ(c.outlets.single_orifice()->centre, spot::Vector3(1, -2, 3));
@@ -65,6 +65,7 @@ TEST(SpotCommand, ReadsEveryKeyword) {
   EXPECT_EQ(c.spots.critical_fraction, 0.58);
   EXPECT_EQ(c.spots.exchange_length, 1.5);
   EXPECT_EQ(c.spots.dilatancy, 0.1);
+  EXPECT_EQ(c.spots.full_strain, 0.3);
   EXPECT_EQ(c.spots.spread, 0.6);
   EXPECT_EQ(c.spots.wall_shear, 0.7);
   EXPECT_EQ(c.spots.surface_exponent, 3.0);
@@ -239,7 +240,7 @@ TEST(SpotCommand, ErrorsOfWordsSayWhichAreKnown) {
        {"accuracy",  "steps",   "strength",   "relax",         "relax tol", "relax chance", "threads",
         "momentum",  "contact", "closing",    "closing 0.004", "volume",    "critical",     "critical 0.58",
         "dilatancy", "spread",  "spread 0.6", "surface",       "fade", "nonaffine", "nonaffine 0.1",
-        "mobility",  "mobility 0.4", "mobility 0.4 1"})
+        "mobility",  "mobility 0.4", "mobility 0.4 1", "full_strain"})
     EXPECT_THAT(error_of(complete + keyword), HasSubstr("ends before its value")) << keyword;
 }
 
@@ -271,6 +272,8 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   EXPECT_THAT(error_of(complete + "critical 0.58 surface 2"), HasSubstr("'surface' is not a finite number"));
   EXPECT_THAT(error_of(complete + "dilatancy -1"),
               AllOf(HasSubstr("'dilatancy' is -1"), HasSubstr("zero or positive")));
+  EXPECT_THAT(error_of(complete + "full_strain -1"),
+              AllOf(HasSubstr("'full_strain' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "spread -1 0.7"), AllOf(HasSubstr("'spread' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "spread 0.6 -1"), AllOf(HasSubstr("'spread' is -1"), HasSubstr("zero or positive")));
   EXPECT_THAT(error_of(complete + "spread 0.6 surface 2"), HasSubstr("'surface' is not a finite number"));
@@ -288,10 +291,11 @@ TEST(SpotCommand, ErrorsOfNumbersSayTheirBounds) {
   for (const std::string more :
        {"volume 0 critical 0.58 1", "volume 77 critical 0.4 1", "volume 77 critical 0.58 0.01",
         "volume 77 dilatancy 0.1", "volume 77 critical 0 1 dilatancy 0.1", "volume 77 critical 0.58 1 dilatancy 1.2",
-        "volume 77 critical 0.58 1 dilatancy 1e300", "volume 77 spread 3 0.7", "volume 77 spread 0.6 5",
+        "volume 77 critical 0.58 1 dilatancy 1e300", "volume 77 full_strain 0.2",
+        "volume 77 critical 0.58 1 full_strain 3", "volume 77 spread 3 0.7", "volume 77 spread 0.6 5",
         "spread 0.6 0.7", "volume 77 persistence 0.1 spread 0.6 0.7"})
     EXPECT_THROW(resolved(more).spots.validate(), InvalidParameter) << more;
-  EXPECT_NO_THROW(resolved("volume 77 critical 0.58 1 dilatancy 0.1").spots.validate());
+  EXPECT_NO_THROW(resolved("volume 77 critical 0.58 1 dilatancy 0.1 full_strain 0.2").spots.validate());
 }
 
 TEST(SpotCommand, SettingsTellWhatSpotsLeave) {
@@ -300,10 +304,11 @@ TEST(SpotCommand, SettingsTellWhatSpotsLeave) {
     for (const auto& [name, value] : resolved(more).settings()) all[name] = value;
     return all;
   };
-  auto found = settings("volume 77 critical 0.625 1.5 dilatancy 0.125 spread 0.5 0.75");
+  auto found = settings("volume 77 critical 0.625 1.5 dilatancy 0.125 full_strain 0.25 spread 0.5 0.75");
   EXPECT_EQ(found["spread"], "0.5 0.75");
   EXPECT_EQ(found["critical"], "0.625 1.5");
   EXPECT_EQ(found["dilatancy"], "0.125");
+  EXPECT_EQ(found["full_strain"], "0.25");
   found = settings("");
   EXPECT_EQ(found["critical"], "0 0");
   EXPECT_EQ(found["dilatancy"], "0");
@@ -389,7 +394,8 @@ TEST(SpotCommand, RandomWordsGiveNoOtherError) {
                                                "walls",     "add",         "cut",
                                                "block",     "cone",        "z",
                                                "plane",     "sphere",      "NULL",
-                                               "recirculate", "hopper", "v_open", "scene", "fade", "mobility"};
+                                               "recirculate", "hopper", "v_open", "scene", "fade", "mobility",
+                                               "full_strain"};
   std::mt19937 random(2006);
   int read = 0;
   for (int attempt = 0; attempt < 100000; ++attempt) {
@@ -497,6 +503,7 @@ TEST(SpotDocumentation, GivesTheDefaults) {
       {"dilation", in(c.spots.dilation, "")},
       {"critical", in(c.spots.critical_fraction, "")},
       {"dilatancy", in(c.spots.dilatancy, "")},
+      {"full_strain", in(c.spots.full_strain, "")},
       {"spread", in(c.spots.spread, "")},
       {"mobility", in(c.spots.mobility.at_rest, "")},
       {"surface", in(c.spots.surface_exponent, "")},

@@ -47,7 +47,7 @@ def come_and_go(folder, ranks):
 
 # With what spots leave behind: spots climb to where they do so in the silo's 10 d.
 # The lattice is looser than any set point, but too low for spots of this radius to tell.
-INGREDIENTS = ALL + " profile uniform radius 2.5 volume 72 critical 0.56 1 dilatancy 0.1 persistence 0 spread 0.6 0.7 nonaffine 0.1 0.5 closing 4e-3 0.1"
+INGREDIENTS = ALL + " profile uniform radius 2.5 volume 72 critical 0.56 1 dilatancy 0.1 full_strain 0.8 persistence 0 spread 0.6 0.7 nonaffine 0.1 0.5 closing 4e-3 0.1"
 
 
 def two_sizes(folder, ranks):

@@ -12,7 +12,7 @@ from lammps_runs import (LOAD_SPOT, OPENING, RATES, deck, error_of, needs_mpirun
 HALF = 6.0  # of the cell along x and y: a period holds two influences of the default radius
 BOX = (-HALF, HALF, -HALF, HALF, -4.0, 20.0)
 BOUNDARY = {"x": "p f f", "y": "f p f", "xy": "p p f"}
-ALL = "volume 77 critical 0.56 0.5 dilatancy 0.1 spread 0.6 0.7 surface 3 dilation 0.03 nonaffine 0.1 0.5 closing 4e-3 0.1"
+ALL = "volume 77 critical 0.56 0.5 dilatancy 0.1 full_strain 0.3 spread 0.6 0.7 surface 3 dilation 0.03 nonaffine 0.1 0.5 closing 4e-3 0.1"
 DUMP = """dump fates all custom 10 fates.dump id x y z xu yu zu ix iy iz f_drain[1] f_drain[2] f_drain[3] f_drain[4]
 dump_modify fates sort id format float %.17g
 dump spots all local 10 spots.dump f_drain[1] f_drain[2] f_drain[3] f_drain[4]

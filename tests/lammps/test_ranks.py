@@ -26,7 +26,7 @@ def test_number_of_ranks(alone, tmp_path, ranks):
 
 
 def test_what_spots_leave(tmp_path):
-    fix = FIX + " profile uniform radius 2.5 volume 72 critical 0.56 1 dilatancy 0.1 spread 0.6 0.7 nonaffine 0.1 0.5 closing 4e-3 0.1"
+    fix = FIX + " profile uniform radius 2.5 volume 72 critical 0.56 1 dilatancy 0.1 full_strain 0.8 spread 0.6 0.7 nonaffine 0.1 0.5 closing 4e-3 0.1"
     drained = []
     for ranks in (1, 3, 4):
         (tmp_path / str(ranks)).mkdir()

@@ -72,7 +72,7 @@ def test_everything_public_has_a_docstring():
 
 LOAD_SPOT = ROOT / "lammps-package" / "load_spot.lmp"
 needs_lmp = pytest.mark.skipif("SPOT_LMP" not in os.environ, reason="needs lmp: SPOT_LMP")
-MODEL = ("speed 6 volume 77 influence 1.5e-3 diffusion 1.47 critical 0.62 0.75 dilatancy 0.15 "
+MODEL = ("speed 6 volume 77 influence 1.5e-3 diffusion 1.47 critical 0.62 0.75 dilatancy 0.15 full_strain 0.2 "
          "spread 0.6 0.7 surface 2 nonaffine 0.15 0.5 closing 0.004 0.15")
 
 
@@ -157,18 +157,19 @@ def test_parameters_of_glass_beads_are_those_of_the_deck():
     assert p.speed == pytest.approx(6 * 0.003 / 0.0175)
     assert [p.dilation, p.volume, p.influence, p.critical_fraction, p.spread, p.wall_shear, p.surface_exponent, p.nonaffine,
             p.closing_gap, p.closing_share] == [0, 77, 1.5e-3, 0.62, 0.6, 0.7, 2, 0.15, 0.004, 0.15]
-    assert [p.diffusion_length, p.exchange_length, p.dilatancy, p.nonaffine_length] == pytest.approx(
-        [1.47 * 0.003, 0.75 * 0.003, 0.15 * 0.003, 0.5 * 0.003])
+    assert [p.diffusion_length, p.exchange_length, p.dilatancy, p.full_strain, p.nonaffine_length] == pytest.approx(
+        [1.47 * 0.003, 0.75 * 0.003, 0.15 * 0.003, 0.2 / 0.003, 0.5 * 0.003])
 
 
 def test_parameters_of_glass_beads_are_those_that_decks_include():
     text = (ROOT / "lammps-package" / "glass-beads.lmp").read_text()
     deck = dict(re.findall(r"^variable\s+(\w+)\s+index (\S+)", text, re.MULTILINE))
-    for name, value in deck.items():  # lengths and speeds are of the form $(1.47*v_d), $(2.5*v_d/v_tau)
-        deck[name] = re.sub(r"^\$\(([0-9.]+)\*v_d(?:/v_tau)?\)$", r"\1", value)
+    for name, value in deck.items():  # lengths, speeds and strains are of the form $(1.47*v_d), $(2.5*v_d/v_tau), $(0.2/v_d)
+        deck[name] = re.sub(r"^\$\(([0-9.]+)(?:\*v_d(?:/v_tau)?|/v_d)\)$", r"\1", value)
     p = Parameters.glass_beads(1.0, 1.0)
     same = {"radius": p.radius, "influence": p.influence, "volume": p.volume, "diffusion": p.diffusion_length, "dilation": p.dilation,
-            "speed": p.speed, "critical": p.critical_fraction, "exchange": p.exchange_length, "dilatancy": p.dilatancy, "spread": p.spread,
+            "speed": p.speed, "critical": p.critical_fraction, "exchange": p.exchange_length, "dilatancy": p.dilatancy, "full_strain": p.full_strain,
+            "spread": p.spread,
             "wall_shear": p.wall_shear, "surface": p.surface_exponent, "nonaffine": p.nonaffine, "own_way": p.nonaffine_length,
             "closing_gap": p.closing_gap, "closing_share": p.closing_share}
     assert set(deck) - set(same) == {"profile"}
@@ -282,7 +283,7 @@ def test_unequal_and_held_grains():
     held = np.zeros(len(PACKING), bool)
     held[np.argmin(np.linalg.norm(POSITIONS - (-6, 3, 5), axis=1))] = True
     ids = np.arange(len(PACKING)) * 10
-    d = drain(Packing(POSITIONS, radii, ids=ids, held=held), BOX, opening(), beads(critical_fraction=0.0, dilatancy=0.0), 6.0)
+    d = drain(Packing(POSITIONS, radii, ids=ids, held=held), BOX, opening(), beads(critical_fraction=0.0, dilatancy=0.0, full_strain=0.0), 6.0)
     left = d.packing
     assert (left.radii == radii[left.ids // 10]).all() and (left.held == held[left.ids // 10]).all()
     assert left.held.sum() == 1 and np.abs(left.positions[left.held] - POSITIONS[held]).max() < 1e-7  # but for the quantum
@@ -291,7 +292,7 @@ def test_unequal_and_held_grains():
 
 def test_a_packing_goes_on_from_where_another_ended(one_thread):
     again = Packing(one_thread.packing.positions, one_thread.packing.radii, ids=one_thread.packing.ids)
-    d = Drainage(again, BOX, opening(), beads(largest_overlap=0.1, critical_fraction=0.0, dilatancy=0.0))
+    d = Drainage(again, BOX, opening(), beads(largest_overlap=0.1, critical_fraction=0.0, dilatancy=0.0, full_strain=0.0))
     assert (d.packing.positions == one_thread.packing.positions).all()  # not a bit is lost
 
 
@@ -363,7 +364,7 @@ def test_other_threads_go_on_and_may_not_interfere():
 
 
 def test_a_collapse_has_a_class_of_its_own_and_ends_the_drainage():
-    d = Drainage(PACKING, BOX, opening(), beads(tolerance=1e3, influence=0.02, critical_fraction=0.0, dilatancy=0.0))
+    d = Drainage(PACKING, BOX, opening(), beads(tolerance=1e3, influence=0.02, critical_fraction=0.0, dilatancy=0.0, full_strain=0.0))
     with pytest.raises(spotcore.CollapsedPacking, match="overlap by|left through the base"):
         d.advance_to(30.0)
     with pytest.raises(RuntimeError, match="has failed"):

@@ -49,6 +49,7 @@ class PinnedScenes {
       add(time_ordered, "outflow", holding_outflow);
       add(time_ordered, "fade", fading);
       add(time_ordered, "mobility", mobile);
+      add(time_ordered, "full-strain", exchanging_where_strained);
     }
   }
   const std::vector<NamedScene>& all() const { return all_; }
@@ -147,6 +148,12 @@ class PinnedScenes {
   static void mobile(PinnedScene& scene) {
     spreading(scene);
     scene.spots.mobility = {0.3, 0.3, 2.0};
+  }
+
+  /// As strongly as spots may have it.
+  static void exchanging_where_strained(PinnedScene& scene) {
+    spreading(scene);
+    scene.spots.full_strain = 0.8;
   }
 
   static void let_come_and_go(PinnedScene& scene) {

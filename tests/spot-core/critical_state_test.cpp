@@ -140,7 +140,7 @@ class CriticalStateVolumeUnit : public testing::Test {
     return static_cast<int>(std::lround(times * critical * spot::grain_volume));
   }
   double after(double volume, const Move& move, int enclosed, double shear = 0.0) const {
-    return critical_.volume_after(volume, move, enclosed, shear, *silo_);
+    return critical_.volume_after(volume, move, enclosed, {shear, shear}, *silo_);
   }
 
   SpotParameters spots_ = critical_spots();
@@ -182,6 +182,24 @@ TEST_F(CriticalStateVolumeUnit, ItIsAWholeNumberOfParts) {
     volume = after(volume, move_at(20.0), enclosed(draws.uniform(0.8, 1.2)));
     const double parts = volume * CriticalState::volume_parts;
     ASSERT_EQ(parts, std::floor(parts));
+  }
+}
+
+/// In proportion to the square of the strain, up to that of full exchange.
+TEST_F(CriticalStateVolumeUnit, LittleIsExchangedWhereLittleIsStrained) {
+  spots_.full_strain = 0.2;
+  spots_.dilatancy = 0.0;
+  const CriticalState critical(spots_, 1.0);
+  for (const double times : {0.95, 1.1}) {
+    const int grains = enclosed(times);
+    const auto logarithm = [&](const spot::Strain& strain) {
+      return std::log(critical.volume_after(1.0, move_at(20.0), grains, strain, *silo_));
+    };
+    const double full = std::log(after(1.0, move_at(20.0), grains));
+    EXPECT_EQ(logarithm({0.0, 0.0}), 0.0);
+    EXPECT_NEAR(logarithm({0.0, 0.05}), full / 16.0, 1e-8);
+    EXPECT_NEAR(logarithm({0.05, 0.1}), full / 4.0, 1e-8);
+    for (const double strain : {0.2, 0.3, 1e300}) EXPECT_EQ(logarithm({0.0, strain}), full);
   }
 }
 

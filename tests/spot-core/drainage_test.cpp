@@ -101,7 +101,7 @@ class PlainDrainage {
     const double height = move.middle.z() - outlet_;
     if (!critical_.on()) return spot::fixed_volume_weight(spots_, height, enclosed);
     const double volume = volumes_.count(move.spot) > 0 ? volumes_[move.spot] : 1.0;
-    volumes_[move.spot] = critical_.volume_after(volume, move, enclosed, 0.0, *container_);
+    volumes_[move.spot] = critical_.volume_after(volume, move, enclosed, spot::Strain(), *container_);
     volume_left_ += volume - volumes_[move.spot];
     return spot::fixed_volume_weight(spots_, height, enclosed, volume);
   }

@@ -109,6 +109,35 @@ TEST(FlowFieldAnalytic, NothingIsShearedByWhatChangesUpwards) {
   EXPECT_NEAR(field.shear({0.3, 1.0, 2.0}), 0.0, 1e-3);
 }
 
+/// All that it is strained by has that, too; and what walls shear. A point lies between nodes of one exponential.
+TEST(FlowFieldAnalytic, AnExponentialIsStrainedByItsWholeGradient) {
+  SpotParameters spots = wide_spots();
+  spots.full_strain = 0.2;
+  spots.wall_shear = 0.7;
+  const auto space = scenes::empty_space();
+  const double walls = spot::shear_by_walls(spots.wall_shear, *space, {0, 0, 0}, spacing);
+  for (const Vector3& k : {Vector3(0.1, 0.0, 0.2), Vector3(0.0, -0.15, -0.1), Vector3(0.0, 0.0, 0.2)}) {
+    FlowField field(spots, *space, 1.0);
+    add(field, planted({-12, -12, -12}, {12, 12, 12}, 0.75, [&](const Vector3& at) { return std::exp(k.dot(at)); }));
+    Alone alone;
+    field.update(0.1, alone);
+    const auto along = [&](int axis) { return 2.0 / spacing * std::tanh(0.5 * spacing * k[axis]); };
+    const double expected = std::hypot(std::hypot(along(0), along(1)), along(2)) + walls;
+    for (const Vector3& at : {Vector3(0, 0, 0), Vector3(1.1, 2.3, -0.7), Vector3(-4, 0.2, 1)}) {
+      EXPECT_NEAR(field.strain(at).whole / expected, 1.0, 0.002) << k.transpose() << " at " << at.transpose();
+      EXPECT_EQ(field.strain(at).shear, field.shear(at));
+    }
+    EXPECT_EQ(field.strain({100, 0, 0}).whole, 0.0) << "where no spot has been";
+  }
+}
+
+TEST(FlowFieldUnit, WithoutAStrainOfFullExchangeNobodyAsksForMoreThanShear) {
+  const auto space = scenes::empty_space();
+  const FlowField field = field_of(random_steps(200, {-9, -7, -4}, {8, 9, 11}, 1), *space);
+  EXPECT_EQ(field.strain({1, 1, 1}).whole, 0.0);
+  EXPECT_GT(field.strain({1, 1, 1}).shear, 0.0);
+}
+
 /// x / sigma^2, of a Gaussian that each node sees smoothed by its nearness to places around.
 TEST(FlowFieldAnalytic, AGaussianIsShearedInProportionToTheDistanceFromItsMiddle) {
   const auto space = scenes::empty_space();

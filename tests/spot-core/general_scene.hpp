@@ -146,6 +146,8 @@ class GeneralScene {
       if (draws.below(2) == 0)
         spots_.mobility = {draws.uniform(0.01, 1.0), d * draws.uniform(0.1, 10.0), d * draws.uniform(0.1, 10.0)};
     }
+    if (spots_.critical_fraction > 0.0 && draws.below(2) == 0)
+      spots_.full_strain = draws.uniform(0.01, 3.0) / spots_.radius;
   }
 
   std::unique_ptr<spot::TimeOrderedDrainage> start_time_ordered() const {
@@ -190,13 +192,13 @@ class GeneralScene {
 
   /// For whoever has to find out what went wrong.
   std::string description() const {
-    return spot::message("scene ", seed_, ": ", grains_.size(), equal_ ? " equal" : " unequal",
-                         " grains, d = ", diameter_, repeats_x_ ? ", repeats along x" : "",
-                         repeats_y_ ? ", repeats along y" : "", ", R_s = ", spots_.radius / diameter_,
-                         ", w = ", spots_.influence, ", volume ", spots_.fixed_volume, ", dilation ", spots_.dilation,
-                         ", phi_c = ", spots_.critical_fraction, ", l = ", spots_.exchange_length,
-                         ", a = ", spots_.dilatancy, ", beta = ", spots_.surface_exponent, ", S = ", spots_.nonaffine,
-                         ", B = ", spots_.spread, ", m_0 = ", spots_.mobility.at_rest);
+    return spot::message(
+        "scene ", seed_, ": ", grains_.size(), equal_ ? " equal" : " unequal", " grains, d = ", diameter_,
+        repeats_x_ ? ", repeats along x" : "", repeats_y_ ? ", repeats along y" : "",
+        ", R_s = ", spots_.radius / diameter_, ", w = ", spots_.influence, ", volume ", spots_.fixed_volume,
+        ", dilation ", spots_.dilation, ", phi_c = ", spots_.critical_fraction, ", l = ", spots_.exchange_length,
+        ", a = ", spots_.dilatancy, ", s_1 = ", spots_.full_strain, ", beta = ", spots_.surface_exponent,
+        ", S = ", spots_.nonaffine, ", B = ", spots_.spread, ", m_0 = ", spots_.mobility.at_rest);
   }
 
  private:

@@ -114,6 +114,7 @@ TEST(ParametersUnit, WithoutACriticalStateSpotsAreThoseOf2006) {
   const SpotParameters spots;
   EXPECT_EQ(spots.critical_fraction, 0.0);
   EXPECT_EQ(spots.dilatancy, 0.0);
+  EXPECT_EQ(spots.full_strain, 0.0);
 }
 
 TEST(ParametersUnit, CriticalPackingFractionsAreThoseOfGrainsInContact) {
@@ -170,6 +171,26 @@ TEST(ParametersUnit, DilatancyIsNotNegativeAndLowersACriticalPackingFraction) {
   spots = scenes::paper_spots();
   spots.dilatancy = 0.1;
   EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("dilatancy is 0.1 "), HasSubstr("needs a critical packing fraction")));
+}
+
+TEST(ParametersUnit, TheStrainOfFullExchangeIsBoundedAndNeedsACriticalPackingFraction) {
+  SpotParameters spots = critical_spots();
+  for (const double good : {0.0, 1e-300, 0.2, 2.999 / spots.radius}) {
+    spots.full_strain = good;
+    EXPECT_NO_THROW(spots.validate());
+  }
+  for (const double bad : {-0.2, infinity, -infinity, std::nan("")}) {
+    spots.full_strain = bad;
+    EXPECT_THAT(refusal_of(spots),
+                AllOf(HasSubstr("strain of full exchange is "), HasSubstr("zero (full everywhere)")));
+  }
+  for (const double bad : {3.001 / spots.radius, 1e300}) {
+    spots.full_strain = bad;
+    EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("strain of full exchange is "), HasSubstr("three over the spot")));
+  }
+  spots = scenes::paper_spots();
+  spots.full_strain = 0.2;
+  EXPECT_THAT(refusal_of(spots), AllOf(HasSubstr("strain of full exchange is 0.2 "), HasSubstr("needs a critical")));
 }
 
 TEST(ParametersUnit, SpreadAndShearByWallsAreBounded) {

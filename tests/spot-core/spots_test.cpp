@@ -540,7 +540,7 @@ TEST(SpotsUnit, ASpotCarriesWhatItHasNotLeft) {
     const int grains = static_cast<int>(times * enclosed);
     const Spots::Carried carried = population.carry(move, grains, *space);
     EXPECT_EQ(carried.volume, volume);
-    volume = critical.volume_after(volume, move, grains, 0.0, *space);
+    volume = critical.volume_after(volume, move, grains, spot::Strain(), *space);
     EXPECT_EQ(carried.left > 0, times > 1.0);
     left += carried.left;
   }
@@ -584,6 +584,7 @@ TEST(SpotsInvariance, SpotsOfWindowsLeaveWhatThoseInTheOrderOfTimeDo) {
   parameters.critical_fraction = 0.6;
   parameters.exchange_length = 1.0;
   parameters.dilatancy = 0.5;
+  parameters.full_strain = 1.0;
   const double interval = spot::calibration::climb_between_settings * parameters.radius / parameters.speed;
   const int windows = 60, grains = 85 * spot::grain_volume;
   using Volumes = std::map<std::int64_t, std::vector<double>>;  // of a spot, move by move
@@ -612,6 +613,9 @@ TEST(SpotsInvariance, SpotsOfWindowsLeaveWhatThoseInTheOrderOfTimeDo) {
   const Volumes in_order = in_the_order_of_time();
   EXPECT_EQ(in_order, in_windows);
   parameters.dilatancy = 0.0;
+  EXPECT_NE(in_order, in_the_order_of_time());
+  parameters.dilatancy = 0.5;
+  parameters.full_strain = 0.0;
   EXPECT_NE(in_order, in_the_order_of_time());
 }
 

@@ -119,7 +119,7 @@ class PlainWindows {
       move.weight = spot::fixed_volume_weight(spots_, move.middle.z() - outlet, shares, live->spot.volume);
       flow_.add(move, live->spot.volume);
       if (critical_.on())
-        live->spot.volume = critical_.volume_after(live->spot.volume, move, shares, flow_.shear(move.middle), *silo_);
+        live->spot.volume = critical_.volume_after(live->spot.volume, move, shares, flow_.strain(move.middle), *silo_);
       if (shares == 0 && move.middle.z() > spots_.radius) live->out = true;
     }
     for (const auto& [move, live] : moves_of_window_) packing_.displace(move, spots_);
@@ -163,6 +163,7 @@ struct Spots {
   double dilation = 0.0;
   double critical_fraction = 0.0, dilatancy = 0.0, surface_exponent = 0.0, nonaffine = 0.0, spread = 0.0;
   bool mobility = false;
+  double full_strain = 0.0;
 };
 
 class WindowedDrainageBruteForce : public testing::TestWithParam<Spots> {};
@@ -182,6 +183,7 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   spots.nonaffine_length = 0.05;
   spots.spread = GetParam().spread;
   spots.wall_shear = 0.7;
+  spots.full_strain = GetParam().full_strain;
   if (GetParam().mobility) spots.mobility = {0.3, 0.3, 2.0};
   if (GetParam().parabolic) spots.profile = spot::InfluenceProfile::parabolic;
   RelaxationParameters never;
@@ -205,19 +207,20 @@ TEST_P(WindowedDrainageBruteForce, WithoutRelaxationItEqualsThePlainAlgorithmToT
   EXPECT_GT(drainage.counters().drained, 50);
 }
 
-INSTANTIATE_TEST_SUITE_P(Schemes, WindowedDrainageBruteForce,
-                         testing::Values(Spots{"Poisson", 0.0, false}, Spots{"FixedVolume", 77.0, false},
-                                         Spots{"Parabolic", 77.0, false, true},
-                                         Spots{"Dilation", 77.0, false, true, 0.03}, Spots{"Together", 0.0, true},
-                                         Spots{"FixedVolumeTogether", 77.0, true},
-                                         Spots{"CriticalState", 77.0, false, true, 0.0, 0.6},
-                                         Spots{"Dilatancy", 77.0, false, true, 0.03, 0.6, 0.1},
-                                         Spots{"Nonaffine", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.2},
-                                         Spots{"Surface", 77.0, false, true, 0.0, 0.0, 0.0, 3.0},
-                                         Spots{"Spread", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.6},
-                                         Spots{"Mobility", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.6, true},
-                                         Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 3.0, 0.2, 0.6}),
-                         [](const auto& spots) { return spots.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Schemes, WindowedDrainageBruteForce,
+    testing::Values(Spots{"Poisson", 0.0, false}, Spots{"FixedVolume", 77.0, false},
+                    Spots{"Parabolic", 77.0, false, true}, Spots{"Dilation", 77.0, false, true, 0.03},
+                    Spots{"Together", 0.0, true}, Spots{"FixedVolumeTogether", 77.0, true},
+                    Spots{"CriticalState", 77.0, false, true, 0.0, 0.6},
+                    Spots{"Dilatancy", 77.0, false, true, 0.03, 0.6, 0.1},
+                    Spots{"Nonaffine", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.2},
+                    Spots{"Surface", 77.0, false, true, 0.0, 0.0, 0.0, 3.0},
+                    Spots{"Spread", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.6},
+                    Spots{"Mobility", 77.0, false, true, 0.0, 0.0, 0.0, 0.0, 0.0, 0.6, true},
+                    Spots{"FullStrain", 77.0, false, true, 0.0, 0.6, 0.0, 0.0, 0.0, 0.0, false, 0.8},
+                    Spots{"AllIngredients", 77.0, false, true, 0.03, 0.6, 0.1, 3.0, 0.2, 0.6}),
+    [](const auto& spots) { return spots.param.name; });
 
 TEST(WindowedDrainageInvariance, ARerunIsIdentical) {
   WindowedDrainage one = drainage_of(filling(15.0)), other = drainage_of(filling(15.0));

@@ -62,12 +62,14 @@ void add_parameters(std::vector<Case>& cases) {
              [](Scene& s, double v) { s.spots.critical_fraction = v; });
   add_values(cases, "critical 0 0.5 dilatancy 0", {0}, [](Scene& s, double v) {
     s.spots.critical_fraction = v;
-    s.spots.dilatancy = v;
+    s.spots.dilatancy = s.spots.full_strain = v;
   });
   add_values(cases, "exchange length l / d", {0.01, 0.119, 0.12, 0.5, 5, 1e300},
              [](Scene& s, double v) { s.spots.exchange_length = v; });
   add_values(cases, "dilatancy a / d", {0, 1e-6, 0.15, 0.5, 1.176, 1.177, 10},
              [](Scene& s, double v) { s.spots.dilatancy = v; });
+  add_values(cases, "full strain s_1 d", {0, 1e-300, 1e-3, 0.2, 0.849, 0.85, 1e300},
+             [](Scene& s, double v) { s.spots.full_strain = v; });
   add_values(cases, "spread B", {0, 1e-6, 0.1, 0.6, 2, 2.1}, [](Scene& s, double v) { s.spots.spread = v; });
   add_values(cases, "spread 0.6, walls' kappa", {0, 1e-6, 0.7, 4, 4.1}, [](Scene& s, double v) {
     s.spots.spread = 0.6;
@@ -142,7 +144,7 @@ Scene scene_with_doubles(int every, double largest_overlap) {
     if (centre.head<2>().norm() < 3.0 && centre.z() < 6.0)
       scene.grains.push_back({static_cast<std::int64_t>(10000 + i), centre});
   }
-  scene.spots.critical_fraction = scene.spots.dilatancy = 0.0;  // it is too loose for any
+  scene.spots.critical_fraction = scene.spots.dilatancy = scene.spots.full_strain = 0.0;  // it is too loose for any
   scene.largest_overlap = largest_overlap;
   scene.placed_by_hand = true;
   return scene;
@@ -211,6 +213,7 @@ void add_odd_numbers(std::vector<Case>& cases) {
       {"phi_c", [](Scene& s, double v) { s.spots.critical_fraction = v; }},
       {"l", [](Scene& s, double v) { s.spots.exchange_length = v; }},
       {"a", [](Scene& s, double v) { s.spots.dilatancy = v; }},
+      {"s_1", [](Scene& s, double v) { s.spots.full_strain = v; }},
       {"B", [](Scene& s, double v) { s.spots.spread = v; }},
       {"kappa", [](Scene& s, double v) { s.spots.wall_shear = v; }},
       {"beta", [](Scene& s, double v) { s.spots.surface_exponent = v; }},
@@ -248,6 +251,7 @@ void add_combinations(std::vector<Case>& cases, int number) {
     scene.spots.critical_fraction = draws.uniform(0.5, 0.55);
     scene.spots.exchange_length = scene.spots.step_height * log_uniform(0.1, 100.0);
     scene.spots.dilatancy = draws.below(2) == 0 ? 0.0 : scene.spots.radius * log_uniform(1e-3, 0.34);
+    scene.spots.full_strain = draws.below(2) == 0 ? 0.0 : log_uniform(1e-3, 3.0) / scene.spots.radius;
     scene.spots.spread = draws.below(2) == 0 ? 0.0 : log_uniform(0.01, 2.0);
     scene.spots.wall_shear = draws.below(2) == 0 ? 0.0 : log_uniform(0.01, 4.0);
     if (draws.below(2) == 0) scene.set_no_fixed_volume();
@@ -267,9 +271,10 @@ void add_combinations(std::vector<Case>& cases, int number) {
          spot::message("alpha ", scene.relaxation.alpha, ", w ", scene.spots.influence, ", R_s ", scene.spots.radius,
                        ", dz ", scene.spots.step_height, ", nu_s ", scene.spots.injection_rate.largest(), ", c_0 ",
                        scene.spots.dilation, ", phi_c ", scene.spots.critical_fraction, ", l ",
-                       scene.spots.exchange_length, ", a ", scene.spots.dilatancy, ", B ", scene.spots.spread,
-                       ", kappa ", scene.spots.wall_shear, ", beta ", scene.spots.surface_exponent, ", momentum ",
-                       scene.relaxation.momentum, ", tolerance ", scene.relaxation.tolerance),
+                       scene.spots.exchange_length, ", a ", scene.spots.dilatancy, ", s_1 ", scene.spots.full_strain,
+                       ", B ", scene.spots.spread, ", kappa ", scene.spots.wall_shear, ", beta ",
+                       scene.spots.surface_exponent, ", momentum ", scene.relaxation.momentum, ", tolerance ",
+                       scene.relaxation.tolerance),
          scene, true});
   }
 }

@@ -179,6 +179,7 @@ Scene::Scene(std::uint64_t seed)
   for (spot::Grain& grain : grains) grain.held = draws.uniform(0.0, 1.0) < held;
   if (spots.holds_outflow && draws.below(2) == 0) spots.fade = draws.uniform(0.1, 2.0);
   if (spots.spread > 0.0 && draws.below(2) == 0) spots.mobility = {0.2, 0.5, 3.0};
+  if (spots.critical_fraction > 0.0 && draws.below(2) == 0) spots.full_strain = draws.uniform(0.01, 3.0) / spots.radius;
 }
 
 /// The bed is looser than any that flows, which is refused: so it is too shallow to be checked.

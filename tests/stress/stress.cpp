@@ -27,7 +27,7 @@ void Scene::set_step_height(double height) {
 }
 
 void Scene::set_no_fixed_volume() {
-  spots.fixed_volume = spots.critical_fraction = spots.dilatancy = spots.spread = 0.0;
+  spots.fixed_volume = spots.critical_fraction = spots.dilatancy = spots.full_strain = spots.spread = 0.0;
 }
 
 void Scene::set_radius(double radius) {

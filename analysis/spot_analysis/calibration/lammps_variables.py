@@ -6,7 +6,7 @@ from .parameters import SYMBOLS, UNITS
 
 IN_THE_DECK = {"radius": "*v_d", "influence": "", "volume": "", "diffusion": "*v_d", "dilation": "", "speed": "*v_d/v_tau"}
 # Of the deck, and not of the runs by which response.py tells what is put in from what is shown: left out of the model.
-OFF = ("critical", "dilatancy", "spread", "surface", "nonaffine", "closing_gap")
+OFF = ("critical", "dilatancy", "full_strain", "spread", "surface", "nonaffine", "closing_gap")
 
 
 # R_s of spots with a profile over that of uniform ones with the same volume: the mean share is 1 or 0.4. A test holds

@@ -85,6 +85,7 @@ class Parameters:
     critical_fraction: float
     exchange_length: float
     dilatancy: float
+    full_strain: float
     spread: float
     wall_shear: float
     mobility: float

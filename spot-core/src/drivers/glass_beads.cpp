@@ -17,6 +17,7 @@ SpotParameters spots(double diameter, double tau) {
   spots.critical_fraction = 0.62;
   spots.exchange_length = 0.75 * diameter;
   spots.dilatancy = 0.15 * diameter;
+  spots.full_strain = 0.2 / diameter;
   spots.spread = 0.6;
   spots.wall_shear = 0.7;
   spots.surface_exponent = 2.0;

@@ -16,7 +16,8 @@ CriticalState::CriticalState(const SpotParameters& parameters, double diameter)
       inset_(calibration::inset_of_walls * parameters.mean_diameter(diameter)),
       fraction_(parameters.critical_fraction),
       exchange_length_(parameters.exchange_length),
-      dilatancy_(parameters.dilatancy) {
+      dilatancy_(parameters.dilatancy),
+      full_strain_(parameters.full_strain) {
   const double ratio = 2.0 * radius_ / diameter;
   enclosed_by_grains_alone_ = profile_->mean_share() * ratio * ratio * ratio;
 }
@@ -29,13 +30,21 @@ double CriticalState::enclosed(const Vector3& middle, double shear, const Contai
   return fraction_ * (1.0 - dilatancy_ * shear) * enclosed_by_grains_alone_ * part;
 }
 
-double CriticalState::volume_after(double volume, const Move& move, int enclosed, double shear,
+/// f: a packing comes to its critical state only as it is strained.
+double CriticalState::share_exchanged(double strain) const {
+  if (strain >= full_strain_) return 1.0;
+  const double part = strain / full_strain_;
+  return part * part;
+}
+
+double CriticalState::volume_after(double volume, const Move& move, int enclosed, const Strain& strain,
                                    const Container& container) const {
   if (move.middle.z() < container.outlets().height() + calibration::least_height_of_exchange * radius_) return volume;
   const double grains = static_cast<double>(enclosed) / grain_volume;
-  const double critical = this->enclosed(move.middle, shear, container);
+  const double critical = this->enclosed(move.middle, strain.shear, container);
   if (!(grains >= calibration::least_share_of_critical * critical) || critical <= 0.0) return volume;
-  const double left = volume * exp(-move.step.z() / exchange_length_ * (grains / critical - 1.0));
+  const double share = share_exchanged(strain.whole);
+  const double left = volume * exp(-share * move.step.z() / exchange_length_ * (grains / critical - 1.0));
   return std::nearbyint(std::clamp(left, calibration::least_volume, calibration::most_volume) * volume_parts) /
          volume_parts;
 }

@@ -76,11 +76,21 @@ void SpotParameters::validate() const {
 void SpotParameters::validate_critical_state() const {
   if (!(dilatancy >= 0.0) || !std::isfinite(dilatancy))
     throw InvalidParameter(message("dilatancy is ", dilatancy, " but must be zero (off) or positive"));
+  if (!(full_strain >= 0.0) || !std::isfinite(full_strain))
+    throw InvalidParameter(
+        message("strain of full exchange is ", full_strain, " but must be zero (full everywhere) or positive"));
   if (critical_fraction == 0.0) {
     if (dilatancy > 0.0)
       throw InvalidParameter(message("dilatancy is ", dilatancy, " but needs a critical packing fraction to lower"));
+    if (full_strain > 0.0)
+      throw InvalidParameter(message("strain of full exchange is ", full_strain,
+                                     " but needs a critical packing fraction that volume is exchanged for"));
     return;
   }
+  if (!(full_strain * radius <= calibration::largest_full_strain))
+    throw InvalidParameter(message("strain of full exchange is ", full_strain, " but must be at most ",
+                                   calibration::largest_full_strain / radius,
+                                   ", three over the spot radius: hardly any flow is strained more"));
   if (!(dilatancy <= calibration::largest_dilatancy * radius))
     throw InvalidParameter(message("dilatancy is ", dilatancy, " but must be at most a third of the spot radius, ",
                                    calibration::largest_dilatancy * radius,

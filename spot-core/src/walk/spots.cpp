@@ -16,7 +16,7 @@ Spots::Spots(const SpotParameters& parameters, const Container& container, doubl
       dilates_(parameters.dilation > 0.0),
       dilation_(parameters, container, diameter),
       critical_(parameters, diameter),
-      shears_(parameters.dilatancy > 0.0 || parameters.spread > 0.0),
+      shears_(parameters.dilatancy > 0.0 || parameters.full_strain > 0.0 || parameters.spread > 0.0),
       flow_(parameters, container, diameter),
       surface_(parameters, container, diameter),
       surfaces_(calibration::climb_between_surfaces * parameters.radius / parameters.speed),
@@ -178,8 +178,8 @@ Spots::Carried Spots::exchange(const Move& move, int enclosed, const Container& 
   const auto place = critical_.on() ? find(move.spot) : places_.end();
   if (place == places_.end()) return carried;
   carried.volume = place->spot.volume;
-  const double shear = shears_ ? flow_.shear(move.middle) : 0.0;
-  place->spot.volume = critical_.volume_after(carried.volume, move, enclosed, shear, container);
+  const Strain strain = shears_ ? flow_.strain(move.middle) : Strain();
+  place->spot.volume = critical_.volume_after(carried.volume, move, enclosed, strain, container);
   carried.left = static_cast<std::int64_t>((carried.volume - place->spot.volume) * CriticalState::volume_parts);
   return carried;
 }

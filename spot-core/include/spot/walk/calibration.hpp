@@ -65,6 +65,10 @@ constexpr std::size_t least_places_at_rest = 8;
 /// sqrt(8) / R_s; from R_s / sqrt(8) on, sheared places would have no critical packing fraction at all.
 constexpr double largest_dilatancy = 1.0 / 3.0;
 
+/// The largest strain, times R_s, from which spots exchange volume in full: more than sqrt(12) over its spacing
+/// FlowField does not tell, so that they would do so nowhere.
+constexpr double largest_full_strain = 3.0;
+
 /// Bounds of the spread and of the shear by walls. DEM's flow has 0.6 and 0.7; choices beyond which nothing was tried.
 constexpr double largest_spread = 2.0, largest_wall_shear = 4.0;
 

@@ -18,6 +18,12 @@ namespace spot {
 /// calibration::farthest_walls of the `spacing` count as that far.
 double shear_by_walls(double kappa, const Container& container, const Vector3& place, double spacing);
 
+/// How a packing is strained at a place, for each length that grains fall (1 / length).
+struct Strain {
+  double shear = 0.0;  ///< s: across the vertical
+  double whole = 0.0;  ///< e: along it, too
+};
+
 /// How fast grains fall from place to place, as told by what spots have carried up, and how that is sheared.
 ///
 /// Grains fall past a place as fast as spots carry free volume up there, so u, the volume that spots have carried for
@@ -26,7 +32,8 @@ double shear_by_walls(double kappa, const Container& container, const Vector3& p
 ///     s = |grad_h u| / u + kappa / h    (1 / length)
 ///
 /// with grad_h across the vertical. The second term is what walls shear, at a half_width() of h, which the lattice is
-/// too coarse for. s says nothing of how fast the flow is: at a given place it stays as it is when more or fewer spots
+/// too coarse for. All that it is strained, e, has the whole gradient: what converges is strained along the vertical,
+/// too. s says nothing of how fast the flow is: at a given place it stays as it is when more or fewer spots
 /// come. In DEM both the packing fraction and the width of the flow follow it (docs/notes/2026-11-28-flow-law.md).
 ///
 /// Steps are counted on the nodes of a NodeLattice, R_s apart, but no closer than grains are; those that were made
@@ -45,6 +52,9 @@ class FlowField {
 
   /// s at a point (1 / length); 0 where no spot has been. As of the last update.
   double shear(const Vector3& point) const;
+
+  /// s and, if a parameter needs it, e at a point; 0 where no spot has been. As of the last update.
+  Strain strain(const Vector3& point) const;
 
   /// grad_h u / u at a point (1 / length); 0 where no spot has been. As of the last update.
   Vector3 slope(const Vector3& point) const;
@@ -84,7 +94,7 @@ class FlowField {
 
   const Container* container_;
   NodeLattice lattice_;
-  bool spreads_;
+  bool spreads_, strains_;
   double wall_shear_;
   double memory_time_, step_height_;
   Mobility mobility_;
@@ -96,6 +106,7 @@ class FlowField {
   std::vector<double> volumes_;             // inside the walls, around the same nodes; 0 where there is next to none
   std::vector<double> walls_;               // what they shear, at the same nodes; below 0 where that is not known yet
   std::vector<double> shear_;               // at the same nodes
+  std::vector<double> strain_;              // at the same nodes, if a parameter needs it
   std::vector<Vector3> slope_;              // at the same nodes, if there is a spread
   std::vector<Vector3> slope_of_mobility_;  // at the same nodes, if not all is mobile
 };

@@ -45,6 +45,9 @@ struct SpotParameters {
   double exchange_length = 0.0;
   /// a: shear s for each length that grains fall (FlowField) lowers phi_c by a s, of itself (length). At most R_s / 3.
   double dilatancy = 0.0;
+  /// s_1: from this strain for each length that grains fall on, spots exchange volume with the packing in full; where
+  /// the strain is e, less (FlowField), (e / s_1)^2 of that. 0: in full everywhere (1 / length). At most 3 / R_s.
+  double full_strain = 0.0;
   /// B: where the flow is sheared by s, free volume spreads as if the diffusion length were B / s (FlowField). 0: it is
   /// b_s everywhere (2006).
   double spread = 0.0;
