@@ -30,7 +30,7 @@ BASELINES = ("nothing", "kinematic")
 # What is built into the deck's parameters and can be switched off: name -> {"options": words for fix spot, "variables": {}}.
 INGREDIENTS = {
     "critical": {"variables": {"critical": "0", "dilatancy": "0", "full_strain": "0"}},
-    # 0.62, less what front and back shear off, where they strain enough.
+    # 0.62, less what front and back shear off. Without kappa they would not strain enough for a full exchange.
     "spread": {"variables": {"spread": "0", "wall_shear": "0", "critical": "0.602", "full_strain": "0"}},
     "dilatancy": {"variables": {"critical": "0.5915", "dilatancy": "0"}},  # a phi_c that gives the same mean, with no shear in it
     "full-strain": {"variables": {"full_strain": "0"}},

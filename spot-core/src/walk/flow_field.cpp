@@ -34,7 +34,7 @@ FlowField::FlowField(const SpotParameters& parameters, const Container& containe
     : container_(&container),
       lattice_(container, std::max(parameters.radius, diameter)),
       spreads_(parameters.spread > 0.0),
-      strains_(parameters.full_strain > 0.0),
+      strains_along_z_(parameters.full_strain > 0.0),
       wall_shear_(parameters.wall_shear),
       memory_time_(calibration::climb_of_flow_memory * parameters.radius / parameters.speed),
       step_height_(parameters.step_height),
@@ -139,16 +139,15 @@ void FlowField::find_shear() {
     const double mean = 0.25 * (low + high) + 0.5 * here;
     return mean > 0.0 ? (high - low) / (2.0 * lattice_.spacing()[axis] * mean) : 0.0;
   };
-  shear_.assign(box_.size(), 0.0);
-  strain_.assign(strains_ ? box_.size() : 0, 0.0);
+  strains_.assign(box_.size(), Eigen::Array2d::Zero());
   slope_.assign(spreads_ ? box_.size() : 0, Vector3::Zero());
   box_.visit([&](const NodeLattice::Node& node, std::size_t k) {
     if (volumes_[k] == 0.0) return;
     const double x = relative_slope(0, node, flow[k]), y = relative_slope(1, node, flow[k]);
-    shear_[k] = std::sqrt(x * x + y * y) + walls_[k];
-    if (strains_) {
+    strains_[k][0] = std::sqrt(x * x + y * y) + walls_[k];
+    if (strains_along_z_) {
       const double z = relative_slope(2, node, flow[k]);
-      strain_[k] = std::sqrt(x * x + y * y + z * z) + walls_[k];
+      strains_[k][1] = std::sqrt(x * x + y * y + z * z) + walls_[k];
     }
     if (spreads_) slope_[k] = Vector3(x, y, 0.0);
   });
@@ -190,10 +189,11 @@ Value FlowField::mean_of(const std::vector<Value>& values, const Vector3& point,
   return volume > 0.0 ? Value(sum / volume) : none;
 }
 
-double FlowField::shear(const Vector3& point) const { return mean_of(shear_, point, 0.0); }
+double FlowField::shear(const Vector3& point) const { return strain(point).shear; }
 
 Strain FlowField::strain(const Vector3& point) const {
-  return {shear(point), strain_.empty() ? 0.0 : mean_of(strain_, point, 0.0)};
+  const Eigen::Array2d none = Eigen::Array2d::Zero(), mean = mean_of(strains_, point, none);
+  return {mean[0], mean[1]};
 }
 
 Vector3 FlowField::slope(const Vector3& point) const {
@@ -243,8 +243,7 @@ void FlowField::restore(ByteReader& saved) {
 }
 
 std::size_t FlowField::memory() const {
-  return bytes_in(added_, carried_, total_, volumes_, walls_, shear_, strain_, slope_, slope_of_mobility_) +
-         lattice_.memory();
+  return bytes_in(added_, carried_, total_, volumes_, walls_, strains_, slope_, slope_of_mobility_) + lattice_.memory();
 }
 
 }  // namespace spot

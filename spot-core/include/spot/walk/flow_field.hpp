@@ -94,7 +94,7 @@ class FlowField {
 
   const Container* container_;
   NodeLattice lattice_;
-  bool spreads_, strains_;
+  bool spreads_, strains_along_z_;
   double wall_shear_;
   double memory_time_, step_height_;
   Mobility mobility_;
@@ -105,8 +105,7 @@ class FlowField {
   std::vector<double> total_;               // the same, each counted alike, if not all is mobile
   std::vector<double> volumes_;             // inside the walls, around the same nodes; 0 where there is next to none
   std::vector<double> walls_;               // what they shear, at the same nodes; below 0 where that is not known yet
-  std::vector<double> shear_;               // at the same nodes
-  std::vector<double> strain_;              // at the same nodes, if a parameter needs it
+  std::vector<Eigen::Array2d> strains_;     // at the same nodes: s and, if a parameter needs it, e
   std::vector<Vector3> slope_;              // at the same nodes, if there is a spread
   std::vector<Vector3> slope_of_mobility_;  // at the same nodes, if not all is mobile
 };
