@@ -135,6 +135,25 @@ TEST(CellLatticeUnit, GrowsByWholeCells) {
   for (const int cells : of.cells_to(far)) EXPECT_EQ(cells, 0);
 }
 
+/// Inside the lattice, and far beyond it on all sides.
+TEST(CellLatticeBruteForce, GrainsAreBetweenTheCornersOfTheCellInWhichTheyAreListed) {
+  for (const Periodic& periodic : {none, along_x, along_both}) {
+    CellLattice of = lattice(periodic);
+    scenes::Draws draws(3);
+    const Vector3 middle = 0.5 * (low + high);
+    for (const double scale : {1.0, 1.3, 4.0})
+      for (int k = 0; k < 1000; ++k) {
+        const Vector3 place = periodic.wrap(Vector3(middle + scale * (draws.in_box(low, high) - middle)));
+        of.note_listed(place - of.low());
+        const auto [lowest, highest] = of.corners(of.cell_at(place - of.low()));
+        EXPECT_TRUE((place.array() >= lowest.array() - 1e-9).all() && (place.array() <= highest.array() + 1e-9).all())
+            << place.transpose();
+        const double largest = (highest - lowest).maxCoeff();
+        EXPECT_LT(largest, scale == 1.0 ? 3.0 : 40.0);
+      }
+  }
+}
+
 TEST(CellLatticeUnit, RefusesTooManyCells) {
   CellLattice of(1.0, 1e9);
   EXPECT_THROW(of.span(Vector3::Constant(-5e9), Vector3::Constant(5e9)), spot::InvalidPacking);

@@ -387,7 +387,7 @@ TEST(TiledPackingUnit, TheSurfaceIsFoundWithoutWhatIsDeepBelowIt) {
                               [](const Grain& grain) { return grain.position.z() > 14.0 + 0.2 * grain.position.x(); }),
                grains.end());
   const TiledPacking packing(1.0, 100.0, -1.0, grains, *silo);
-  EXPECT_LT(expect_same_surface(packing, *silo, 1.0), grains.size() / 2);
+  EXPECT_LT(expect_same_surface(packing, *silo, 1.0), grains.size() / 8);
 }
 
 /// In a sweep over some cells, grains are pushed off those that stay with full strength.

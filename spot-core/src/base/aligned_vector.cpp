@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "spot/base/aligned_vector.hpp"
 
-#include <cstdint>
 #include <new>
 
 #ifdef __linux__
@@ -12,27 +11,21 @@ namespace spot {
 
 namespace {
 
-constexpr std::align_val_t cache_line{64};
+constexpr std::size_t cache_line = 64, huge_page = std::size_t{1} << 21;
 
-/// Advice only: where it is not taken, pages stay small.
-void ask_for_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
-#ifdef MADV_HUGEPAGE
-  constexpr std::uintptr_t page = 4096, huge_page = std::uintptr_t{1} << 21;
-  if (bytes < 2 * huge_page) return;
-  const auto first = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page;
-  const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
-  madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
-#endif
-}
+std::align_val_t alignment(std::size_t bytes) { return std::align_val_t{bytes < huge_page ? cache_line : huge_page}; }
 
 }  // namespace
 
 void* allocate_aligned(std::size_t bytes) {
-  void* memory = ::operator new(bytes, cache_line);
-  ask_for_huge_pages(memory, bytes);
+  void* memory = ::operator new(bytes, alignment(bytes));
+#ifdef MADV_HUGEPAGE
+  // Advice only: where it is not taken, pages stay small, as those after the last whole huge page do.
+  if (bytes >= huge_page) madvise(memory, bytes / huge_page * huge_page, MADV_HUGEPAGE);
+#endif
   return memory;
 }
 
-void free_aligned(void* memory) { ::operator delete(memory, cache_line); }
+void free_aligned(void* memory, std::size_t bytes) { ::operator delete(memory, alignment(bytes)); }
 
 }  // namespace spot

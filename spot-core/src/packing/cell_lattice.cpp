@@ -98,14 +98,19 @@ Cell CellLattice::cell(std::uint32_t number) const {
   return {in_layer % held(0) - images_[0], in_layer / held(0) - images_[1], i / layer + first_layer_};
 }
 
+void CellLattice::note_listed(const Vector3& from_low) {
+  const Vector3 size(n_[0] * edge_[0], n_[1] * edge_[1], n_[2] * edge_[2]);
+  beyond_[0] = beyond_[0].cwiseMax(-from_low);
+  beyond_[1] = beyond_[1].cwiseMax(from_low - size);
+}
+
 std::pair<Vector3, Vector3> CellLattice::corners(const Cell& cell) const {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
   const std::array<int, 3> at = {cell.x, cell.y, cell.z};
   Vector3 low, high;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<Eigen::Index>(axis);
-    low[k] = at[axis] == 0 ? -infinite : low_[k] + at[axis] * edge_[axis];
-    high[k] = at[axis] == n_[axis] - 1 ? infinite : low_[k] + (at[axis] + 1) * edge_[axis];
+    low[k] = low_[k] + at[axis] * edge_[axis] - (at[axis] == 0 ? beyond_[0][k] : 0.0);
+    high[k] = low_[k] + (at[axis] + 1) * edge_[axis] + (at[axis] == n_[axis] - 1 ? beyond_[1][k] : 0.0);
   }
   return {low, high};
 }

@@ -30,8 +30,9 @@ std::uint32_t end_of(const CellLattice& lattice, std::uint32_t cell, std::uint32
 }
 
 /// Of each slot. `first_slot`: of each cell, and the end of the last.
-std::vector<std::uint32_t> cells_of_slots(const std::vector<std::uint32_t>& first_slot) {
-  std::vector<std::uint32_t> cells;
+AlignedVector<std::uint32_t> cells_of_slots(const AlignedVector<std::uint32_t>& first_slot) {
+  AlignedVector<std::uint32_t> cells;
+  cells.reserve(first_slot.back());
   for (std::uint32_t cell = 0; cell + 1 < first_slot.size(); ++cell) cells.resize(first_slot[cell + 1], cell);
   return cells;
 }
@@ -111,7 +112,8 @@ void Cells::ensure_place(const Place& place) {
 
 /// More room for a cell, and for all others that have none left: soon they will need it, too.
 void Cells::give_room(std::uint32_t cell) {
-  std::vector<std::uint32_t> first(first_slot_.size()), now(slots());
+  AlignedVector<std::uint32_t> first(first_slot_.size());
+  std::vector<std::uint32_t> now(slots());
   std::uint32_t end = 0;
   for (std::uint32_t c = 0; c < count(); ++c) {
     first[c] = end;
@@ -146,6 +148,7 @@ void Cells::occupy(std::uint32_t slot, std::int64_t id, const Point& point, cons
   points[slot] = point;
   coordinates.set(slot, is_image(cell_of(slot)) ? nobody : point);
   references[slot] = reference;
+  lattice().note_listed(from_low(reference, cell_of(slot)));
   corrections[slot] = {0, 0, 0, 0};
   if (tilted_) tilts.set(slot, {0, 0, 0, 0});
   if (unequal_) sizes[slot] = size_of(radius);

@@ -15,6 +15,14 @@ namespace {
 /// In the blocks that a slot has.
 std::uint32_t entries(std::uint8_t room) { return room == 0 ? 0 : kernels::lanes << (room - 1); }
 
+/// Makes an array longer. Of the longest one there is, twice as much as is needed would be a quarter of all memory.
+template <typename Values>
+void lengthen(Values& values, std::size_t by) {
+  const std::size_t length = values.size() + by;
+  if (length > values.capacity()) values.reserve(length + length / 8);
+  values.resize(length, 0);
+}
+
 }  // namespace
 
 NeighbourLists::NeighbourLists(Cells& cells, WallMarks& walls, const kernels::Kernels& kernels)
@@ -154,7 +162,7 @@ std::uint32_t NeighbourLists::take_blocks(std::size_t order) {
   std::vector<std::uint32_t>& unused = unused_[order];
   if (unused.empty()) {
     const std::size_t first = neighbours_.size() / kernels::lanes;
-    neighbours_.resize(neighbours_.size() + (std::size_t{kernels::lanes} << order), 0);
+    lengthen(neighbours_, std::size_t{kernels::lanes} << order);
     return static_cast<std::uint32_t>(first);
   }
   const std::uint32_t first = unused.back();

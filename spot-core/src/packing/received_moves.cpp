@@ -24,7 +24,7 @@ MovesReceived ReceivedMoves::take() {
 
 void ReceivedMoves::renumber(const std::vector<std::uint32_t>& now, std::size_t slots) {
   if (!counts_) return;
-  const std::vector<std::uint32_t> old = std::exchange(of_slot_, std::vector<std::uint32_t>(slots, 0));
+  const AlignedVector<std::uint32_t> old = std::exchange(of_slot_, AlignedVector<std::uint32_t>(slots, 0));
   for (std::size_t slot = 0; slot < now.size(); ++slot) of_slot_[now[slot]] = old[slot];
 }
 

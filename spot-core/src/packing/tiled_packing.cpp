@@ -195,6 +195,7 @@ void TiledPacking::move_reference(Place place) {
     place = to;
   } else {
     cells_.note_change(from);
+    cells_.lattice().note_listed(at);
   }
   cells_.references[cells_.slot(place)] = cells_.points[cells_.slot(place)];
   drifted_.push_back(place);

@@ -92,7 +92,7 @@ void WallMarks::push_off_others(std::uint32_t slot, double strength, const Conta
 }
 
 void WallMarks::renumber(const std::vector<std::uint32_t>& now, std::size_t slots) {
-  const std::vector<std::uint8_t> old = std::move(near_wall_);
+  const AlignedVector<std::uint8_t> old = std::move(near_wall_);
   near_wall_.assign(slots, 0);
   for (std::size_t slot = 0; slot < now.size(); ++slot) near_wall_[now[slot]] = old[slot];
   if (now.empty()) cell_near_wall_.assign(cells_.count(), 0);

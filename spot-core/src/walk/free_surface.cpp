@@ -35,27 +35,28 @@ void FreeSurface::clear() {
   heights_.clear();
 }
 
-/// That around a place.
+/// That around a place, where nothing repeats.
 NodeLattice::Node FreeSurface::column(const Vector3& place) const {
   NodeLattice::Node column = {0, 0, 0};
   for (std::size_t axis = 0; axis < 2; ++axis)
     column[axis] = static_cast<int>(std::floor(lattice_.cell_of(place, axis) + 0.5));
-  return lattice_.wrapped(column);
+  return column;
 }
 
 void FreeSurface::add(const Vector3& grain) {
-  const NodeLattice::Node column = this->column(container_->periodic().wrap(grain));
+  const NodeLattice::Node column = lattice_.wrapped(this->column(container_->periodic().wrap(grain)));
   if (!box_.contains(column)) cover({column, {column[0] + 1, column[1] + 1, 1}});
   double& height = heights_[box_.place(column)];
   height = std::max(height, grain.z());
 }
 
 bool FreeSurface::covers(const Vector3& low, const Vector3& high) const {
-  if (container_->periodic().any() || !low.allFinite() || !high.allFinite()) return false;
   const NodeLattice::Node first = column(low), last = column(high);
   for (NodeLattice::Node node = first; node[1] <= last[1]; ++node[1])
-    for (node[0] = first[0]; node[0] <= last[0]; ++node[0])
-      if (!box_.contains(node) || heights_[box_.place(node)] < high.z()) return false;
+    for (node[0] = first[0]; node[0] <= last[0]; ++node[0]) {
+      const NodeLattice::Node known = lattice_.wrapped(node);
+      if (!box_.contains(known) || heights_[box_.place(known)] < high.z()) return false;
+    }
   return true;
 }
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
+#include "spot/base/aligned_vector.hpp"
 #include "spot/base/memory.hpp"
 
 namespace spot {
@@ -41,8 +41,8 @@ class CellDrift {
   std::size_t memory() const { return bytes_in(bound_, moved_); }
 
  private:
-  std::vector<std::int32_t> bound_;
-  std::vector<std::uint8_t> moved_;  // no bits, since threads write them
+  AlignedVector<std::int32_t> bound_;
+  AlignedVector<std::uint8_t> moved_;  // no bits, since threads write them
 };
 
 }  // namespace spot

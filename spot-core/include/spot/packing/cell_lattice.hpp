@@ -9,6 +9,7 @@
 #include "spot/base/quantum.hpp"
 #include "spot/base/vector.hpp"
 #include "spot/geometry/periodic.hpp"
+#include "spot/packing/cell_rows.hpp"
 #include "spot/packing/point.hpp"
 
 namespace spot {
@@ -16,21 +17,6 @@ namespace spot {
 /// A cell, counted from the lowest corner of the lattice.
 struct Cell {
   int x, y, z;
-};
-
-/// Consecutive cells along x, by their numbers among those held: from `first` to `last`, exclusive.
-struct CellRow {
-  std::uint32_t first, last;
-};
-
-/// Rows along x: of the layers held from `first_layer` to `last_layer`, exclusive, with images of cells or without;
-/// and of them those of one part. Next to each other, in a layer or above, are rows of different parts.
-struct RowsAsked {
-  int first_layer, last_layer;
-  bool with_images = false;
-  int part = 0, parts = 1;
-
-  bool contain(int y, int z) const { return (y + z + parts) % parts == part; }  // y = -1: images
 };
 
 /// The lattice of cells over a packing, and the places in them as whole numbers of quanta.
@@ -95,7 +81,9 @@ class CellLattice {
     return {static_cast<int>(number % n_[0]), static_cast<int>(number / n_[0] % n_[1]),
             static_cast<int>(number / n_[0] / n_[1])};
   }
-  /// Between which the grains of a cell were listed: infinitely far where it holds what lies beyond the lattice.
+  /// A grain is listed here from now on.
+  void note_listed(const Vector3& from_low);
+  /// Between which all grains are that were ever listed in a cell; the outermost are as large as it takes.
   std::pair<Vector3, Vector3> corners(const Cell& cell) const;
   bool is_image(const Cell& cell) const { return cell.x < 0 || cell.x >= n_[0] || cell.y < 0 || cell.y >= n_[1]; }
   /// The cell that an image is one of.
@@ -138,8 +126,9 @@ class CellLattice {
   Periodic periodic_;
   double skin_;
   Vector3 low_ = Vector3::Zero();
-  std::array<double, 3> edge_, per_edge_;    // of a cell, and 1 over it
-  std::array<std::int64_t, 3> edge_quanta_;  // the same
+  std::array<Vector3, 2> beyond_ = {Vector3::Zero(), Vector3::Zero()};  // how far grains were listed below and above it
+  std::array<double, 3> edge_, per_edge_;                               // of a cell, and 1 over it
+  std::array<std::int64_t, 3> edge_quanta_;                             // the same
   std::array<int, 3> n_ = {0, 0, 0};
   std::array<int, 3> images_ = {0, 0, 0};           // at each end, 0 or 1
   std::array<std::int64_t, 3> period_ = {0, 0, 0};  // in quanta

@@ -123,11 +123,11 @@ class Cells : public HeldCells {
   AlignedVector<Point> points, references, corrections;  ///< `corrections`: the last, as far as a solver carries it on
   Coordinates coordinates;                               ///< for `points`, while moves displace them
   Tilts tilts;                                           ///< if they have any; as of the start of a window
-  std::vector<std::int64_t> ids;                         ///< -1 in empty slots
-  std::vector<GrainSize> sizes;                          ///< if they are unequal
+  AlignedVector<std::int64_t> ids;                       ///< -1 in empty slots
+  AlignedVector<GrainSize> sizes;                        ///< if they are unequal
   // Of every cell.
-  std::vector<std::int32_t> unrelaxed;  ///< moves that have reached into it since it was relaxed, in sixteenths
-  CellDrift drift;                      ///< how far grains may be from their references
+  AlignedVector<std::int32_t> unrelaxed;  ///< moves that have reached into it since it was relaxed, in sixteenths
+  CellDrift drift;                        ///< how far grains may be from their references
   /// Places of this rank to which grains came that are neither free nor held, and perhaps others.
   std::vector<Place> in_motion;
 
@@ -138,8 +138,8 @@ class Cells : public HeldCells {
   void give_room(std::uint32_t cell);
   GrainSize size_of(double radius) const;
 
-  std::vector<std::uint32_t> first_slot_ = {0};  // of each cell, and the end of the last
-  std::vector<std::uint32_t> cell_of_;           // of each slot
+  AlignedVector<std::uint32_t> first_slot_ = {0};  // of each cell, and the end of the last
+  AlignedVector<std::uint32_t> cell_of_;           // of each slot
   std::vector<SlotData*> attached_;
   std::array<std::vector<Place>, 2> changed_;
   std::vector<Place> changed_in_images_;

@@ -96,11 +96,11 @@ class NeighbourLists : public SlotData {
   const kernels::Kernels& kernels_;
   double widest_gap_ = 0.0;
   AlignedVector<std::uint32_t> neighbours_;
-  std::vector<std::uint32_t> block_;  // the first of each slot
-  std::vector<std::uint8_t> room_;    // 2^(room - 1) blocks, or none
-  std::vector<std::uint8_t> size_;
+  AlignedVector<std::uint32_t> block_;  // the first of each slot
+  AlignedVector<std::uint8_t> room_;    // 2^(room - 1) blocks, or none
+  AlignedVector<std::uint8_t> size_;
   std::array<std::vector<std::uint32_t>, 4> unused_;  // blocks, by how many there are in a row
-  std::vector<std::uint8_t> anew_;                    // is the grain of a slot being listed anew?
+  AlignedVector<std::uint8_t> anew_;                  // is the grain of a slot being listed anew?
   std::vector<Finding> findings_;
 };
 

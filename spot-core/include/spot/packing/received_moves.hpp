@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "spot/base/aligned_vector.hpp"
 #include "spot/packing/cells.hpp"
 #include "spot/packing/displacement.hpp"
 #include "spot/packing/slot_data.hpp"
@@ -35,7 +36,7 @@ class ReceivedMoves : public SlotData {
  private:
   const Cells& cells_;
   bool counts_ = false;
-  std::vector<std::uint32_t> of_slot_;
+  AlignedVector<std::uint32_t> of_slot_;
   MovesReceived handed_over_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "spot/base/aligned_vector.hpp"
 #include "spot/geometry/container.hpp"
 #include "spot/packing/cells.hpp"
 
@@ -49,9 +50,9 @@ class WallMarks : public SlotData {
   void other_contacts(const Container& container, const Vector3& centre, double reach, WallContacts& contacts) const;
 
   Cells& cells_;
-  std::vector<TouchingPlane> planes_;    // the container's axis planes, unless there are too many
-  std::vector<std::uint8_t> near_wall_;  // a bit for each of these; the highest for all other walls
-  std::vector<std::uint8_t> cell_near_wall_;
+  std::vector<TouchingPlane> planes_;      // the container's axis planes, unless there are too many
+  AlignedVector<std::uint8_t> near_wall_;  // a bit for each of these; the highest for all other walls
+  AlignedVector<std::uint8_t> cell_near_wall_;
 };
 
 }  // namespace spot

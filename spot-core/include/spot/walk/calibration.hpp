@@ -25,7 +25,7 @@ constexpr double climb_between_settings = 0.1;
 
 /// The free surface is found anew whenever a spot at v_s has climbed this part of R_s. A choice: 0.3 tau with the
 /// fitted parameters, in which the surface of the example sinks by 0.05 d, where spots tell heights apart on the scale
-/// of R_s. In every window it took 3 to 4 % of a run, since it asks all grains.
+/// of R_s. In every window it took 3 to 4 % of a run, when it asked all grains.
 constexpr double climb_between_surfaces = 0.5;
 
 /// While a spot at v_s climbs so many R_s, what FlowField remembers of earlier steps falls by a factor of e: 6 tau
