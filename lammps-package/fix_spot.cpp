@@ -90,12 +90,23 @@ std::uint64_t hash_of(const spot::Grain &grain, double radius, const spot::Quant
   return hash ^ (hash >> 32);
 }
 
-/// Two halves, so that sums over ranks don't overflow.
-void count_hash(std::vector<std::int64_t> &sums, std::uint64_t hash, int sign) {
+/// Of grains: their number, and their hashes in two halves, so that sums over ranks don't overflow.
+using HashSums = std::array<std::int64_t, 3>;
+
+void count_hash(HashSums &sums, std::uint64_t hash, int sign) {
   sums[0] += sign;
   sums[1] += sign * static_cast<std::int64_t>(hash & 0xffffffffu);
   sums[2] += sign * static_cast<std::int64_t>(hash >> 32);
 }
+
+void add(HashSums &sums, const HashSums &others) {
+  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += others[k];
+}
+
+/// What one thread adds up, in a cache line of its own.
+struct alignas(64) HashSumsOfThread {
+  HashSums sums{};
+};
 
 std::string lost(std::int64_t grain) {
   return message("grain ", grain, " was lost by LAMMPS: make the simulation box larger");
@@ -173,7 +184,8 @@ struct FixSpot::Model {
   std::int64_t windows = 0;  // done since the fix was made; the clock of the spots
   double window = 0.0;       // in time units; until the first step only what it would be
   int windows_per_step = 1;
-  std::vector<std::int64_t> remembered;  // hash of the grains of this rank as the fix has left them, none before
+  std::optional<HashSums> remembered;  // of the grains of this rank as the fix has left them
+  HashSums found{};                    // as it has found them since
   bool named_unused_forces = false, told_outflow = false;
   LocalIndices local;
   std::unique_ptr<spot::Recirculation> recirculation;  // if grains go round
@@ -655,6 +667,8 @@ void FixSpot::setup(int) {
       if (model->command.uses_region()) model->drainage->replace_container(model->container);
       if (somebody_changed_grains()) take_changes();
       model->drainage->require_inside();
+    } else {
+      find_hashes();
     }
     write_grains({}, false);
     remember_grains();
@@ -686,36 +700,36 @@ void FixSpot::write_scene() {
 }
 
 /// One pass over this rank's grains, in the order in which LAMMPS has them.
-std::vector<std::int64_t> FixSpot::hash_of_lammps() const {
-  const spot::Quantum &quantum = model->drainage->quantum();
-  std::vector<std::int64_t> sums = {0, 0, 0};
+void FixSpot::find_hashes() {
+  model->found = {};
   std::mutex adding;
   model->drainage->share_out(atom->nlocal, [&](std::size_t first, std::size_t last) {
-    std::vector<std::int64_t> own = {0, 0, 0};
-    for (int i = static_cast<int>(first); i < static_cast<int>(last); ++i)
-      count_hash(own, hash_of(grain_of_lammps(i), atom->radius[i], quantum, model->cell), 1);
+    HashSums own{};
+    for (int i = static_cast<int>(first); i < static_cast<int>(last); ++i) count_hash(own, hash_of_lammps(i), 1);
     const std::lock_guard<std::mutex> lock(adding);
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += own[k];
+    add(model->found, own);
   });
-  return sums;
 }
 
-/// After the fix has written what it knows. Those that leave are LAMMPS' until it drops them.
+std::uint64_t FixSpot::hash_of_lammps(int i) const {
+  return hash_of(grain_of_lammps(i), atom->radius[i], model->drainage->quantum(), model->cell);
+}
+
+/// After the fix has written what it knows, and has added it to what it had found. Those that leave are LAMMPS' until
+/// it drops them.
 void FixSpot::remember_grains() {
   model->drainage->forget_moved();
-  model->remembered = hash_of_lammps();
-  const spot::Quantum &quantum = model->drainage->quantum();
-  for (const tagint grain : model->leaving) {
-    const int i = local_index(grain);
-    count_hash(model->remembered, hash_of(grain_of_lammps(i), atom->radius[i], quantum, model->cell), -1);
-  }
+  model->remembered = model->found;
+  for (const tagint grain : model->leaving) count_hash(*model->remembered, hash_of_lammps(local_index(grain)), -1);
 }
 
 /// Does LAMMPS still have the grains, on whichever ranks, as the fix has left them? Sums of hashes tell.
-bool FixSpot::somebody_changed_grains() const {
-  if (model->remembered.empty()) return true;
-  std::vector<std::int64_t> differences = hash_of_lammps();
-  for (std::size_t k = 0; k < differences.size(); ++k) differences[k] -= model->remembered[k];
+bool FixSpot::somebody_changed_grains() {
+  find_hashes();
+  if (!model->remembered) return true;
+  std::vector<std::int64_t> differences;
+  for (std::size_t k = 0; k < model->found.size(); ++k)
+    differences.push_back(model->found[k] - (*model->remembered)[k]);
   return model->ranks->sum(differences) != std::vector<std::int64_t>{0, 0, 0};
 }
 
@@ -756,55 +770,69 @@ void FixSpot::count_crossings(int i, int axis, double beyond) {
   atom->image[i] = others | ((((atom->image[i] >> shift) + periods) & mask) << shift);
 }
 
-/// Positions go back to LAMMPS, and so does who has left; after a step the velocity is the displacement over it divided
-/// by the timestep. Then most grains may be at rest: LAMMPS has them where they are.
-void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_step) {
-  model->local.assign(atom->tag, atom->nlocal);
-  const double per_time = 1.0 / update->dt;
-  const spot::Which which = after_step ? spot::Which::moved : spot::Which::all;
-  if (after_step && atom->nlocal > 0) std::fill_n(atom->v[0], 3 * static_cast<std::size_t>(atom->nlocal), 0.0);
-  const spot::Quantum &quantum = model->drainage->quantum();
-  const auto put = [&](std::int64_t grain, const double *position) {
-    const int i = model->local[static_cast<tagint>(grain)];
-    if (i < 0) throw spot::InvalidPacking(lost(grain));  // LAMMPS' errors are for its own thread
-    if (was_put_back(grain)) {
-      // Whatever it was, it is no motion.
-      for (int axis = 0; axis < 3; ++axis) {
-        atom->x[i][axis] = in_box(position[axis], axis);
-        atom->v[i][axis] = 0.0;
-      }
-      return;
-    }
+/// Puts a grain of LAMMPS where it is now. After a step its velocity is the displacement over it divided by the
+/// timestep.
+void FixSpot::move_grain(int i, const double *position, bool after_step) {
+  if (was_put_back(atom->tag[i])) {
+    // Whatever it was, it is no motion.
     for (int axis = 0; axis < 3; ++axis) {
-      const double before = quantum.snap(atom->x[i][axis]);
-      const double by = model->cell.nearest(position[axis] - before, axis);
-      if (after_step) {
-        atom->v[i][axis] = by * per_time;
-        if (peratom_flag) array_atom[i][axis] += by;
-      }
-      count_crossings(i, axis, before + by - position[axis]);
       atom->x[i][axis] = in_box(position[axis], axis);
+      atom->v[i][axis] = 0.0;
     }
-  };
-  if (comm->nprocs == 1) {
-    model->drainage->visit_grains_at_once([&](const spot::Grain &grain) { put(grain.id, grain.position.data()); },
-                                          which);
-    for (const spot::Grain &grain : drained) model->leaving.push_back(static_cast<tagint>(grain.id));
     return;
   }
+  const double per_time = 1.0 / update->dt;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double before = model->drainage->quantum().snap(atom->x[i][axis]);
+    const double by = model->cell.nearest(position[axis] - before, axis);
+    if (after_step) {
+      atom->v[i][axis] = by * per_time;
+      if (peratom_flag) array_atom[i][axis] += by;
+    }
+    count_crossings(i, axis, before + by - position[axis]);
+    atom->x[i][axis] = in_box(position[axis], axis);
+  }
+}
+
+/// Positions go back to LAMMPS, and so does who has left. After a step most grains may be at rest: LAMMPS has them
+/// where they are.
+void FixSpot::write_grains(const std::vector<spot::Grain> &drained, bool after_step) {
+  model->local.assign(atom->tag, atom->nlocal);
+  if (after_step && atom->nlocal > 0) std::fill_n(atom->v[0], 3 * static_cast<std::size_t>(atom->nlocal), 0.0);
+  std::vector<HashSumsOfThread> changes(model->command.threads);
+  const auto put = [&](std::int64_t grain, const double *position, std::size_t thread) {
+    const int i = model->local[static_cast<tagint>(grain)];
+    if (i < 0) throw spot::InvalidPacking(lost(grain));  // LAMMPS' errors are for its own thread
+    count_hash(changes[thread].sums, hash_of_lammps(i), -1);
+    move_grain(i, position, after_step);
+    count_hash(changes[thread].sums, hash_of_lammps(i), 1);
+  };
+  if (comm->nprocs == 1) {
+    model->drainage->visit_grains_at_once(
+        [&](const spot::Grain &grain, std::size_t thread) { put(grain.id, grain.position.data(), thread); },
+        after_step ? spot::Which::moved : spot::Which::all);
+    for (const spot::Grain &grain : drained) model->leaving.push_back(static_cast<tagint>(grain.id));
+  } else {
+    for (const Delivery &delivery : deliver_grains(drained, after_step))
+      if (delivery.left)
+        model->leaving.push_back(static_cast<tagint>(delivery.id));
+      else
+        put(delivery.id, delivery.position, 0);
+  }
+  for (const HashSumsOfThread &change : changes) add(model->found, change.sums);
+}
+
+/// What other ranks' packings tell of grains that LAMMPS has here.
+std::vector<Delivery> FixSpot::deliver_grains(const std::vector<spot::Grain> &drained, bool after_step) const {
   std::vector<Delivery> deliveries;
   const auto add = [&](const spot::Grain &grain, bool left) {
     const spot::Vector3 &at = grain.position;
     deliveries.push_back({grain.id, {at.x(), at.y(), at.z()}, left});
   };
-  model->drainage->visit_grains([&](const spot::Grain &grain) { add(grain, false); }, which);
+  model->drainage->visit_grains([&](const spot::Grain &grain) { add(grain, false); },
+                                after_step ? spot::Which::moved : spot::Which::all);
   for (const spot::Grain &grain : drained) add(grain, true);
-  for (const Delivery &delivery : deliver(deliveries, {atom->tag, atom->tag + atom->nlocal}, *model->ranks)) {
-    if (delivery.left)
-      model->leaving.push_back(static_cast<tagint>(delivery.id));
-    else
-      put(delivery.id, delivery.position);
-  }
+  return deliver(deliveries, {atom->tag, atom->tag + atom->nlocal}, *model->ranks);
 }
 
 /* ----------------------------------------------------------------------

@@ -20,6 +20,7 @@ struct Grain;
 }
 
 struct BoxWalls;
+struct Delivery;
 
 namespace LAMMPS_NS {
 
@@ -78,15 +79,18 @@ class FixSpot : public Fix {
   void read_period();
   void check_box();
   void require_walls_or_period(const BoxWalls &) const;
-  std::vector<std::int64_t> hash_of_lammps() const;
+  void find_hashes();
+  std::uint64_t hash_of_lammps(int) const;
   void remember_grains();
-  bool somebody_changed_grains() const;
+  bool somebody_changed_grains();
   void take_changes();
   spot::Grain grain_of_lammps(int) const;
   std::vector<spot::Grain> grains_of_lammps() const;
   double in_box(double, int) const;
   void count_crossings(int, int, double);
+  void move_grain(int, const double *, bool);
   void write_grains(const std::vector<spot::Grain> &, bool);
+  std::vector<Delivery> deliver_grains(const std::vector<spot::Grain> &, bool) const;
   void offer_output_per_atom();
   void add_moves_received();
   void put_back(const std::vector<spot::Grain> &);

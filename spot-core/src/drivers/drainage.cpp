@@ -113,7 +113,10 @@ void Drainage::add_drained(const std::vector<Grain>& grains, Spots& spots) {
 
 void Drainage::require_inside(Which which) const {
   const auto require = [&](const Grain& grain) { checks_.require_inside(grain); };
-  container().concurrent() ? visit_grains_at_once(require, which) : visit_grains(require, which);
+  if (container().concurrent())
+    visit_grains_at_once([&require](const Grain& grain, std::size_t) { require(grain); }, which);
+  else
+    visit_grains(require, which);
 }
 
 void Drainage::replace_container(std::shared_ptr<const Container> container) {

@@ -229,17 +229,22 @@ void TiledPacking::displace(std::vector<Move>& moves, const SpotParameters& spot
 
 // ---- the rest
 
-void TiledPacking::visit_grains(const VisitGrain& visit, Which which, Workers* workers) const {
-  const auto visit_cells = [&](int, std::size_t first, std::size_t last) {
+void TiledPacking::visit_grains(const VisitGrain& visit, Which which) const {
+  Workers one_thread(1);
+  visit_grains_at_once([&visit](const Grain& grain, std::size_t) { visit(grain); }, which, one_thread);
+}
+
+void TiledPacking::visit_grains_at_once(const VisitGrainAtOnce& visit, Which which, Workers& workers) const {
+  const auto visit_cells = [&](int worker, std::size_t first, std::size_t last) {
     for (std::uint32_t k = static_cast<std::uint32_t>(first); k < last; ++k) {
       const std::uint32_t cell = cells_.first_own() + k;
       if (cells_.is_image(cell) || (which == Which::moved && !cells_.drift.moved(cell))) continue;
       const Cell listed_in = cells_.lattice().cell(cell);
-      cells_.visit(cell, cell + 1, [&](std::uint32_t slot) { visit(cells_.grain(slot, listed_in)); });
+      cells_.visit(cell, cell + 1,
+                   [&](std::uint32_t slot) { visit(cells_.grain(slot, listed_in), static_cast<std::size_t>(worker)); });
     }
   };
-  const std::size_t owned = cells_.last_own() - cells_.first_own();
-  workers ? workers->share_out(owned, visit_cells) : visit_cells(0, 0, owned);
+  workers.share_out(cells_.last_own() - cells_.first_own(), visit_cells);
 }
 
 void TiledPacking::take_out_below(double outlet, const std::function<bool(const Vector3& place)>& is_closed,

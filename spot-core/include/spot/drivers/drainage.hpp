@@ -57,8 +57,8 @@ class Drainage {
   /// others; in no particular order.
   virtual void visit_grains(const VisitGrain& visit, Which which = Which::all) const = 0;
   /// The same, from all threads of the driver at once.
-  virtual void visit_grains_at_once(const VisitGrain& visit, Which which = Which::all) const {
-    visit_grains(visit, which);
+  virtual void visit_grains_at_once(const VisitGrainAtOnce& visit, Which which = Which::all) const {
+    visit_grains([&visit](const Grain& grain) { visit(grain, 0); }, which);
   }
   virtual void forget_moved() {}
   /// Calls job(first, last) for parts of 0 ... n, exclusive, on all threads of the driver.

@@ -49,8 +49,8 @@ class WindowedDrainage : public Drainage {
   void visit_grains(const VisitGrain& visit, Which which = Which::all) const override {
     packing_.visit_grains(visit, which);
   }
-  void visit_grains_at_once(const VisitGrain& visit, Which which = Which::all) const override {
-    packing_.visit_grains(visit, which, workers_.get());
+  void visit_grains_at_once(const VisitGrainAtOnce& visit, Which which = Which::all) const override {
+    packing_.visit_grains_at_once(visit, which, *workers_);
   }
   void forget_moved() override { packing_.cells().drift.forget_moved(); }
   void share_out(std::size_t n, const std::function<void(std::size_t, std::size_t)>& job) const override {

@@ -21,6 +21,8 @@ struct Grain {
 };
 
 using VisitGrain = std::function<void(const Grain&)>;
+/// By many threads at once; which one, counted from 0.
+using VisitGrainAtOnce = std::function<void(const Grain&, std::size_t thread)>;
 /// Grains to be visited: all of them, or those that may have moved.
 enum class Which { all, moved };
 

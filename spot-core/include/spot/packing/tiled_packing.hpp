@@ -47,8 +47,7 @@ class TiledPacking {
   double extent() const { return cells_.lattice().extent(); }
   const Quantum& quantum() const { return cells_.lattice().quantum(); }
 
-  /// Grains of this rank.
-  std::size_t size() const { return cells_.size(); }
+  std::size_t size() const { return cells_.size(); }  ///< grains of this rank
 
   /// The rank that owns the layer at this height.
   int owner(double height) const { return cells_.slabs().owner(cells_.lattice().layer(height)); }
@@ -62,8 +61,9 @@ class TiledPacking {
   /// busiest rank than it costs. Returns whether it has.
   bool balance(const Container& container);
 
-  /// Calls visit(grain) for these grains of this rank, in no particular order; from all threads at once, if there are.
-  void visit_grains(const VisitGrain& visit, Which which = Which::all, Workers* workers = nullptr) const;
+  /// Calls visit for these grains of this rank, in no particular order.
+  void visit_grains(const VisitGrain& visit, Which which = Which::all) const;
+  void visit_grains_at_once(const VisitGrainAtOnce& visit, Which which, Workers& workers) const;
 
   /// Gives moves their weights, when it is told the volume of this rank's grains that each of them encloses.
   using Weigh = std::function<void(const std::vector<int>& enclosed, std::vector<Move>& moves)>;
