@@ -171,6 +171,7 @@ std::string describe(const DryRun& run) {
       << ", \"fixed_volume\": " << p.fixed_volume << ", \"step_height\": " << p.step_height
       << ", \"speed\": " << p.speed << ", \"diffusion\": " << p.diffusion_length() << ", \"dilation\": " << p.dilation
       << ", \"critical\": " << p.critical_fraction << ", \"dilatancy\": " << p.dilatancy
+      << ", \"full_strain\": " << p.full_strain << ", \"spread\": " << p.spread
       << ", \"surface\": " << p.surface_exponent << ", \"nonaffine\": " << p.nonaffine
       << ",\n\"spot_volume\": " << p.missing_volume(run.largest)
       << ", \"enclosed\": " << p.spot_volume(spot::calibration::packing_fraction_of_flow) / p.influence

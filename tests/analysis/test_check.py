@@ -70,6 +70,13 @@ def test_sizes_that_were_compared():
     assert rows(critical=0)["critical fraction phi_c"][0].note.startswith("0: off") and "critical fraction phi_c" not in rows()
 
 
+def test_what_makes_beds_flow_as_dems_is_told_in_diameters():
+    found = rows(diameter=0.003, full_strain=200 / 3, spread=0)
+    strain, spread = found["strain of full exchange s_1"][0], found["spread by shear B"][0]
+    assert strain.value == pytest.approx(0.2) and strain.unit == "1/d" and "0.2" in strain.note
+    assert spread.value == 0 and spread.note.startswith("0: off")
+
+
 def test_what_recirculates_is_never_empty():
     found = rows(recirculates=True)
     assert "empty after" not in found and found["turned over every"][0].value == 20

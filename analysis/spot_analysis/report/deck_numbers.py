@@ -8,7 +8,7 @@ was compared.
 import math
 
 from ..base.errors import AnalysisError
-from .deck_rows import Row, critical, is_mixture, outlet, sizes
+from .deck_rows import Row, closures, is_mixture, outlet, sizes
 
 GRAVITY = {"si": 9.81, "cgs": 981.0, "lj": 1.0}  # by units of LAMMPS
 MOVE = 8e-6  # s of one core, on a quiet machine: examples/silo and own-hopper, 28 and 16 to 17 s for a simulated second
@@ -43,7 +43,7 @@ def numbers(run, tau):
         Row("grains in a spot", run["enclosed"] / grain, "", None, None, "at a packing fraction of 0.58"),
         Row("diffusion length b_s", run["diffusion"] / d, "d", 1.1, 1.6, CALIBRATED),
         Row("speed v_s", run["speed"] * tau / d, "d/tau", 4, 10, CALIBRATED + "; else g or the units are others"),
-        *critical(run),
+        *closures(run, d),
         Row("dilation c_0", run["dilation"], "", 0, 0, "0: all spots climb at v_s"),
         Row("outflow", outflow, f"grains/{time}", None, None, "births x V_s; with *injection* 2 to 6 % less leave"),
         Row("outflow", outflow * tau, "grains/tau", None, None, "an input: nothing here checks it"),

@@ -54,10 +54,12 @@ def sizes(run, d):
             Row("largest grain", run["largest"] / d, "d", None, SIZES[1], "examples/bidisperse", LOOSE)]
 
 
-def critical(run):
-    """phi_c, where the program tells it; 0 switches the closure off."""
-    if "critical" not in run:
-        return []
-    note = "equal glass beads have 0.62" + ("; of mixtures: examples/bidisperse" if is_mixture(run) else "")
-    note = note if run["critical"] else "0: off; beds flow as dense as they are"
-    return [Row("critical fraction phi_c", run["critical"], "", None, None, note)]
+def closures(run, d):
+    """Of what makes beds of any density and width flow as DEM's: those that the program tells; 0 switches each off."""
+    of_mixtures = "; of mixtures: examples/bidisperse" if is_mixture(run) else ""
+    all_rows = {
+        "critical": ("critical fraction phi_c", 1, "", "equal glass beads have 0.62" + of_mixtures, "beds flow as dense as they are"),
+        "full_strain": ("strain of full exchange s_1", d, "1/d", "glass beads have 0.2", "plugs loosen as all else does"),
+        "spread": ("spread by shear B", 1, "", "glass beads have 0.6", "beds sink as funnels, not as plugs")}
+    return [Row(name, run[key] * unit, units, None, None, note if run[key] else f"0: off; {without}")
+            for key, (name, unit, units, note, without) in all_rows.items() if key in run]

@@ -125,6 +125,7 @@ std::pair<int, int> TiledPacking::reached(double height, double radius) const {
 /// After all places in the own layers have been occupied.
 void TiledPacking::list_all(const Container& container) {
   walls_.find_planes(container);
+  lists_.reserve(cells_.size());
   cells_.visit_own([&](std::uint32_t slot) { lists_.list(slot, container); });
   ghosts_.send_positions();
   ghosts_.exchange(container);

@@ -43,6 +43,8 @@ class NeighbourLists : public SlotData {
   /// How far a grain may be from its reference (length): half a skin, less what gaps take of it.
   double largest_drift() const { return 0.5 * (cells_.lattice().skin() - widest_gap_); }
 
+  /// Room for so many grains, before they are listed: an array that grew meanwhile would end up longer than needed.
+  void reserve(std::size_t grains);
   /// Lists a grain and its neighbours with each other, and marks it if it is near a wall.
   void list(std::uint32_t slot, const Container& container);
   /// Lists many whose references are all in place already: workers find their neighbours and write their lists, and one
